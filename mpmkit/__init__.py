@@ -1,0 +1,39 @@
+"""mpmkit: a plug-in based Material Point Method for yield-stress materials.
+
+>>> import mpmkit
+>>> case = mpmkit.load_case("cases/slump.json")
+>>> history = mpmkit.run(case)          # an xarray.Dataset
+>>> history.spread_diameter.plot()
+"""
+
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+try:
+    __version__ = version("mpmkit")
+except PackageNotFoundError:  # a checkout that is not installed
+    __version__ = "0.0.0"
+
+if TYPE_CHECKING:
+    from .case import Case, load_case, parse_case
+    from .runner import run
+    from .solver.simulation import Simulation
+
+__all__ = ["Case", "Simulation", "__version__", "load_case", "parse_case", "run"]
+
+_HOME = {
+    "Case": "mpmkit.case",
+    "load_case": "mpmkit.case",
+    "parse_case": "mpmkit.case",
+    "run": "mpmkit.runner",
+    "Simulation": "mpmkit.solver.simulation",
+}
+
+
+def __getattr__(name: str) -> Any:
+    # Loaded when asked for: a plug-in that imports mpmkit.contracts must not pull in the solver.
+    if name in _HOME:
+        from importlib import import_module
+
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'mpmkit' has no attribute '{name}'")

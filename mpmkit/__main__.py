@@ -1,0 +1,5 @@
+"""``python -m mpmkit``."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,7 @@
+"""Case files: what a scene is, how it is read, and what is said of a bad one."""
+
+from .load import load_case, parse_case
+from .model import Case, case_model
+from .schema import case_schema
+
+__all__ = ["Case", "case_model", "case_schema", "load_case", "parse_case"]

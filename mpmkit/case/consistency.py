@@ -1,0 +1,127 @@
+"""Rules of a case that span several fields. Each is one sentence that names the field, the value, and what is allowed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .model import Case
+
+WHOLE = 1e-6
+"""How far, in cells, a length may be from a whole number of cells and still count as whole."""
+
+
+def check(case: Case) -> None:
+    """Raise ValueError with one sentence for the first rule that is broken."""
+    _check_vector("gravity", case.gravity, case)
+    _check_domain(case)
+    _check_faces(case)
+    for number, body in enumerate(case.bodies):
+        where = f"bodies.{number}"
+        _check_vector(f"{where}.velocity", body.velocity, case)
+        _check_particles_per_cell(f"{where}.particles_per_cell", body.particles_per_cell, case)
+        _check_sound_speed(f"{where}.material.sound_speed", body.material)
+        try:
+            body.shape.check(case.space_)
+        except ValueError as error:
+            raise ValueError(f"{where}.shape: {error}") from None
+        _check_inside(where, body, case)
+    if case.output.history_interval is not None and case.output.history_interval > case.until:
+        raise ValueError(
+            f"output.history_interval is {case.output.history_interval:g} s; it must be at most until, {case.until:g} s"
+        )
+
+
+def _check_vector(field: str, value: list[float] | None, case: Case) -> None:
+    axes = case.space_.axes
+    if value is not None and len(value) != len(axes):
+        raise ValueError(
+            f"{field} is {value}; in the space '{case.space}' it needs {len(axes)} numbers, along {', '.join(axes)}"
+        )
+
+
+def _check_domain(case: Case) -> None:
+    axes, domain, cell = case.space_.axes, case.grid.domain, case.grid.cell_size
+    for axis in domain:
+        if axis not in axes:
+            raise ValueError(f"grid.domain has an axis '{axis}'; the space '{case.space}' has the axes {', '.join(axes)}")
+    for axis in axes:
+        if axis not in domain:
+            raise ValueError(f"grid.domain lacks the axis '{axis}'; it needs {', '.join(axes)}, each as [lower, upper]")
+        lower, upper = domain[axis]
+        if not lower < upper:
+            raise ValueError(f"grid.domain.{axis} is [{lower:g}, {upper:g}]; the lower end must be below the upper one")
+        cells = (upper - lower) / cell
+        if abs(cells - round(cells)) > WHOLE * max(1.0, cells) or round(cells) < 1:
+            raise ValueError(
+                f"grid.domain.{axis} is {cells:.6g} cells long; it must be a whole number of cells of "
+                f"{cell:g} m, such as [{lower:g}, {lower + max(1, round(cells)) * cell:g}]"
+            )
+        if cells > 2**30:
+            raise ValueError(f"grid.domain.{axis} has {cells:.3g} cells; at most {2**30} are possible")
+    if case.space_.radial and domain["r"][0] < 0:
+        raise ValueError(f"grid.domain.r begins at {domain['r'][0]:g}; a radius is at least 0")
+
+
+def _check_faces(case: Case) -> None:
+    names = case.space_.faces
+    faces = case.grid.faces
+    for name in faces:
+        if name not in names:
+            raise ValueError(f"grid.faces has '{name}'; the faces of the space '{case.space}' are {', '.join(names)}")
+    for axis in case.space_.axes:
+        pair = [faces.get(f"{axis}_{side}") for side in ("min", "max")]
+        if "periodic" in pair and pair[0] != pair[1]:
+            raise ValueError(f"grid.faces: {axis}_min and {axis}_max must both be 'periodic' if one of them is")
+    if case.space_.radial:
+        if "periodic" in (faces.get("r_min"), faces.get("r_max")):
+            raise ValueError("grid.faces: the radial axis cannot be 'periodic'")
+        if case.grid.domain["r"][0] == 0 and faces.get("r_min", "symmetry") != "symmetry":
+            raise ValueError(
+                f"grid.faces.r_min is '{faces['r_min']}'; at r = 0 it is the axis of symmetry, leave it out or say 'symmetry'"
+            )
+
+
+def _check_particles_per_cell(field: str, value: int | list[int] | None, case: Case) -> None:
+    dim = case.space_.dim
+    if isinstance(value, list):
+        _check_vector(field, value, case)  # type: ignore[arg-type]
+    elif value is not None and round(value ** (1 / dim)) ** dim != value:
+        allowed = ", ".join(str(k**dim) for k in range(1, 5))
+        raise ValueError(
+            f"{field} is {value}; one number must be a {'square' if dim == 2 else 'cube'} ({allowed}, …), "
+            f"or give the number along each axis, such as {[2] * dim}"
+        )
+
+
+def _check_sound_speed(field: str, material) -> None:
+    if material.constitutive_law.uses_equation_of_state:
+        if material.sound_speed is None:
+            raise ValueError(
+                f'{field} is missing; the law \'{material.law}\' needs it, in m/s or as {{"factor": 10}} for 10 √(2 g h)'
+            )
+    elif material.sound_speed is not None:
+        raise ValueError(f"{field} is given, but the law '{material.law}' has a pressure of its own; leave it out")
+
+
+def _check_inside(where: str, body, case: Case) -> None:
+    lower, upper = body.shape.bounds(case.space_)
+    tolerance = WHOLE * case.grid.cell_size
+    for a, axis in enumerate(case.space_.axes):
+        low, high = case.grid.domain[axis]
+        for side, beyond, end in (
+            ("min", lower[a] < low - tolerance, lower[a]),
+            ("max", upper[a] > high + tolerance, upper[a]),
+        ):
+            cut = case.grid.faces.get(f"{axis}_{side}") == "symmetry"
+            if beyond and not cut:
+                raise ValueError(
+                    f"{where}.shape reaches {axis} = {end:g} m, outside the grid, whose domain along {axis} "
+                    f"is [{low:g}, {high:g}]; only a face with 'symmetry' may cut a body"
+                )
+        if np.isclose(lower[a], upper[a], rtol=0, atol=0):
+            raise ValueError(f"{where}.shape has no extent along {axis}")
+
+

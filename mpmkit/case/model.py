@@ -1,0 +1,236 @@
+"""The case: a scene, its materials and the schemes that solve it, as pydantic models.
+
+The models of the schemes and the materials are made from the registered plug-ins, so that a third party's
+parameters are validated, documented and completed in an editor exactly as the built-in ones.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property, reduce
+from operator import or_
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, create_model, model_validator
+
+from ..contracts import ConstitutiveLaw, EquationOfState, quantity
+from ..contracts.order import UpdateOrder
+from ..contracts.shape import ShapeFunction
+from ..contracts.velocity import VelocityUpdate
+from ..contracts.volumetric import VolumetricTreatment
+from ..geometry import AnyShape
+from ..registry import Registry
+from ..spaces import SPACES, Space
+from .output import OutputSettings
+
+STANDARD_GRAVITY = 9.81
+
+
+class Model(BaseModel):
+    """Base of the case's own models: strict, finite, and no key that is not known."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Friction(Model):
+    """A Coulomb wall: it pushes but does not pull, and drags with at most ``coefficient`` times its push."""
+
+    kind: Literal["friction"]
+    coefficient: float = Field(ge=0, description="Coulomb friction coefficient [1]")
+
+
+FaceName = Literal["slip", "stick", "periodic", "open", "symmetry"]
+
+
+def _face_tag(value: Any) -> str:
+    return "name" if isinstance(value, str) else "friction"
+
+
+Face = Annotated[
+    Annotated[FaceName, Tag("name")] | Annotated[Friction, Tag("friction")], Discriminator(_face_tag)
+]
+
+
+class Grid(Model):
+    """The background grid: cubic cells on a box whose faces carry the boundary conditions."""
+
+    cell_size: float = quantity("m", "side of a cell", gt=0)
+    domain: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = quantity(
+        "m", "lower and upper end of the domain along each axis of the space"
+    )
+    faces: dict[str, Face] = Field(
+        default={}, description="condition on each face, such as z_min; a face that is not named is open"
+    )
+
+
+class SoundSpeedFactor(Model):
+    """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h)."""
+
+    factor: float = Field(gt=0, description="multiple of √(2 g h) [1]")
+
+
+def _sound_speed_tag(value: Any) -> str:
+    return "factor" if isinstance(value, dict | SoundSpeedFactor) else "value"
+
+
+SoundSpeed = Annotated[
+    Annotated[float, Field(gt=0), Tag("value")] | Annotated[SoundSpeedFactor, Tag("factor")],
+    Discriminator(_sound_speed_tag),
+]
+
+
+class Material(Model):
+    """A constitutive law with its parameters, a density and, for a fluid, a sound speed."""
+
+    law: str
+    density: float = quantity("kg/m^3", "initial density", gt=0)
+    sound_speed: SoundSpeed | None = Field(
+        default=None, description="artificial sound speed [m/s], or a factor of √(2 g h)"
+    )
+    equation_of_state: EquationOfState
+
+    @cached_property
+    def constitutive_law(self) -> ConstitutiveLaw:
+        raise NotImplementedError("only the models made by case_model know their law")
+
+
+class Body(Model):
+    """A shape filled with a material."""
+
+    shape: AnyShape
+    material: Material
+    particles_per_cell: Annotated[int, Field(gt=0)] | list[Annotated[int, Field(gt=0)]] | None = Field(
+        default=None,
+        description="particles in a full cell (a square or cubic number), or their number along each axis; "
+        "2 along each axis unless told",
+    )
+    velocity: list[float] | None = quantity("m/s", "initial velocity along each axis; at rest unless told", default=None)
+
+
+class TimeStep(Model):
+    """The step as a fraction of the smallest limit that is not ignored."""
+
+    fraction: float = Field(default=0.5, gt=0, le=1, description="fraction of the critical step [1]")
+    ignore: list[Literal["acoustic", "viscous", "advective"]] = Field(
+        default=[], description="limits that the step may exceed; a warning says by how much"
+    )
+
+
+class Scheme(Model):
+    """The numerical method."""
+
+    shape: ShapeFunction
+    order: UpdateOrder
+    velocity: VelocityUpdate
+    volumetric: VolumetricTreatment
+    time_step: TimeStep = TimeStep()
+
+
+class Case(Model):
+    """A whole scene."""
+
+    name: str = Field(
+        default="case", pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100, description="name of its run directory"
+    )
+    description: str = ""
+    space: Literal["3d", "plane-strain", "axisymmetric"]
+    until: float = quantity("s", "simulated time", gt=0)
+    gravity: list[float] | None = quantity(
+        "m/s^2", "acceleration along each axis; 9.81 down the last axis unless told", default=None
+    )
+    grid: Grid
+    bodies: list[Body] = Field(min_length=1)
+    scheme: Scheme
+    output: OutputSettings = OutputSettings()
+
+    @property
+    def space_(self) -> Space:
+        """The space as an object that knows its axes."""
+        return SPACES[self.space]
+
+    @cached_property
+    def gravity_vector(self) -> np.ndarray:
+        """Acceleration of gravity, m/s², ``(dim,)``."""
+        if self.gravity is not None:
+            return np.array(self.gravity)
+        vector = np.zeros(self.space_.dim)
+        vector[-1] = -STANDARD_GRAVITY
+        return vector
+
+    @cached_property
+    def height(self) -> float:
+        """Vertical extent h of all bodies together, m, for c = factor √(2 g h)."""
+        bounds = [body.shape.bounds(self.space_) for body in self.bodies]
+        return float(max(upper[-1] for _, upper in bounds) - min(lower[-1] for lower, _ in bounds))
+
+    def sound_speed(self, material: Material) -> float | None:
+        """Sound speed of a material, m/s; None where its law needs none."""
+        if not material.constitutive_law.uses_equation_of_state:
+            return None
+        speed = material.sound_speed
+        if isinstance(speed, SoundSpeedFactor):
+            return speed.factor * math.sqrt(2 * float(np.linalg.norm(self.gravity_vector)) * self.height)
+        return speed
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Case:
+        from .consistency import check  # the rules that span several fields, apart from the fields
+
+        check(self)
+        return self
+
+
+def _choice(plugins: dict[str, type], default: str | None) -> tuple[Any, Any]:
+    """Annotation and default of a field that holds one of several plug-ins, told apart by name."""
+
+    def tag(value: Any) -> Any:
+        if isinstance(value, dict):
+            return value.get("name")
+        return value if isinstance(value, str) else getattr(value, "name", None)
+
+    members = [Annotated[cls, Tag(name)] for name, cls in plugins.items()]
+    annotation = Annotated[reduce(or_, members), Discriminator(tag)]  # type: ignore[arg-type]
+    if default in plugins:
+        return annotation, Field(default=default, validate_default=True)
+    return annotation, ...
+
+
+def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
+    own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
+
+    def constitutive_law(self: Material) -> ConstitutiveLaw:
+        return law.model_validate({name: getattr(self, name) for name in law.model_fields})
+
+    base = type("Material", (Material,), {"constitutive_law": property(constitutive_law), "__module__": __name__})
+    return create_model(
+        f"Material_{law.__name__}",
+        __base__=base,
+        __doc__=law.__doc__,
+        law=(Literal[law.name], ...),
+        equation_of_state=_choice(registry.of_kind("equation_of_state"), "linear"),
+        **own_fields,  # type: ignore[call-overload]
+    )
+
+
+def case_model(registry: Registry) -> type[Case]:
+    """The model of case files for the plug-ins that are registered."""
+    laws = [_material_model(law, registry) for law in registry.of_kind("law").values()]  # type: ignore[arg-type]
+    material = Annotated[reduce(or_, laws), Field(discriminator="law")]  # type: ignore[arg-type]
+    body = create_model("Body", __base__=Body, material=(material, ...))
+    scheme = create_model(
+        "Scheme",
+        __base__=Scheme,
+        __doc__=Scheme.__doc__,
+        shape=_choice(registry.of_kind("shape"), "cpgimp"),
+        order=_choice(registry.of_kind("order"), "usl"),
+        velocity=_choice(registry.of_kind("velocity"), "flip"),
+        volumetric=_choice(registry.of_kind("volumetric"), "own"),
+    )
+    return create_model(
+        "Case",
+        __base__=Case,
+        __doc__=Case.__doc__,
+        bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
+        scheme=(scheme, Field(default={}, validate_default=True)),
+    )

@@ -1,0 +1,29 @@
+"""What a run writes, and when."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from ..contracts import quantity
+
+
+class OutputSettings(BaseModel):
+    """Intervals and contents of the history and the frames."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    history_interval: float | None = quantity(
+        "s", "time between rows of the history; a 400th of the run unless told", gt=0, default=None
+    )
+    frame_interval: float | None = quantity(
+        "s", "time between frames; a 20th of the run unless told", gt=0, default=None
+    )
+    snapshot_times: list[Annotated[float, Field(ge=0)]] = quantity(
+        "s", "times whose frames the report draws; the last state is always drawn", default=[0.0, 0.1, 0.2, 0.5]
+    )
+    particle_history: list[Literal["position", "velocity", "stress", "pressure", "volume_ratio"]] = Field(
+        default=[], description="particle fields kept in every row of the history, by particle number"
+    )
+    report: bool = Field(default=True, description="whether pictures are drawn at the end")

@@ -1,0 +1,16 @@
+"""JSON Schema of case files, for completion in an editor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..registry import Registry
+from .model import case_model
+
+
+def case_schema(registry: Registry) -> dict[str, Any]:
+    """The schema, with the unit of every quantity and the parameters of every registered plug-in."""
+    schema = case_model(registry).model_json_schema()
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["title"] = "mpmkit case"
+    return schema

@@ -1,0 +1,23 @@
+"""Options that mean the same on every command that runs something."""
+
+from __future__ import annotations
+
+import click
+
+case_file = click.argument("case", type=click.Path())
+set_values = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Change one value of the case, such as scheme.order=usf or bodies.0.material.yield_stress=50.",
+)
+threads = click.option(
+    "--threads", type=click.IntRange(min=1), help="Threads to use; as many as pay off unless told."
+)
+quiet = click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
+out = click.option(
+    "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
+)
+as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")

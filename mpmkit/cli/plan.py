@@ -1,0 +1,41 @@
+"""``mpmkit plan``."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from . import options
+
+
+@click.command("plan")
+@options.case_file
+@options.set_values
+@options.threads
+@options.as_json
+def command(case: str, overrides: tuple[str, ...], threads: int | None, as_json: bool) -> None:
+    """Say what a run of CASE will cost: particles, nodes, steps, memory and time."""
+    from ..case import load_case
+
+    loaded = load_case(case, overrides)
+
+    from ..plan import plan
+
+    cost = plan(loaded, threads)
+    if as_json:
+        click.echo(json.dumps(cost, indent=2, ensure_ascii=False))
+        return
+    speeds = [speed for speed in cost["sound_speed"] if speed is not None]
+    lines = [
+        f"particles      {cost['particles']:,}",
+        f"nodes          {' × '.join(f'{n:,}' for n in cost['nodes'])}",
+        f"time step      {cost['time_step']:.4g} s, set by the {cost['limited_by']} limit",
+        *(f"  {name:<12} {limit:.4g} s" for name, limit in cost["limits"].items() if limit is not None),
+        *(f"sound speed    {speed:.4g} m/s" for speed in speeds),
+        f"steps          {cost['steps']:,}",
+        f"memory         {cost['memory_bytes'] / 2**20:,.0f} MiB",
+        f"expected time  {cost['expected_seconds']:,.0f} s on this machine",
+        *(f"warning: {sentence}" for sentence in cost["warnings"]),
+    ]
+    click.echo("\n".join(lines))

@@ -1,0 +1,30 @@
+"""What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
+
+from .base import API_VERSION, Plugin, quantity
+from .equation_of_state import EquationOfState
+from .hooks import KINDS, hookimpl
+from .law import REST_SHEAR_RATE, ConstitutiveLaw, GeneralisedNewtonianLaw, Motion, StateVariable
+from .operations import Operations
+from .order import UpdateOrder
+from .shape import ShapeFunction
+from .velocity import VelocityUpdate
+from .volumetric import VolumetricTreatment
+
+__all__ = [
+    "API_VERSION",
+    "KINDS",
+    "REST_SHEAR_RATE",
+    "ConstitutiveLaw",
+    "EquationOfState",
+    "GeneralisedNewtonianLaw",
+    "Motion",
+    "Operations",
+    "Plugin",
+    "ShapeFunction",
+    "StateVariable",
+    "UpdateOrder",
+    "VelocityUpdate",
+    "VolumetricTreatment",
+    "hookimpl",
+    "quantity",
+]

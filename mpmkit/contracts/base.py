@@ -1,0 +1,57 @@
+"""What every plug-in is: a frozen, validated record of its parameters that knows its name and its source."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, Field, model_serializer, model_validator
+from pydantic.json_schema import GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+API_VERSION = 1
+"""Version of the plug-in contracts; a plug-in of another version is reported, not loaded."""
+
+
+def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
+    """A physical parameter: a pydantic ``Field`` that also carries its SI unit into the JSON Schema.
+
+    >>> yield_stress: float = quantity("Pa", "stress below which it does not flow", ge=0)
+    """
+    return Field(description=f"{description} [{unit}]".strip(), json_schema_extra={"unit": unit}, **constraints)
+
+
+class Plugin(BaseModel):
+    """Base of all descriptors. Its annotated fields are its parameters; its class variables say what it is.
+
+    In a case file a plug-in is written by name, ``"cpgimp"``, or with parameters,
+    ``{"name": "cpgimp", "domain": "stretch"}``.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    name: ClassVar[str]
+    citation: ClassVar[str]
+    api_version: ClassVar[int] = API_VERSION
+
+    @model_validator(mode="before")
+    @classmethod
+    def _accept_shorthand(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            return {}
+        if isinstance(value, dict):
+            return {key: item for key, item in value.items() if key != "name"}
+        return value
+
+    @model_serializer(mode="wrap")
+    def _with_name(self, handler: Any) -> dict[str, Any]:
+        return {"name": self.name, **handler(self)}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        body = handler.resolve_ref_schema(handler(schema))
+        name = getattr(cls, "name", None)
+        if name is None:
+            return body
+        body["properties"] = {"name": {"const": name}, **body.get("properties", {})}
+        body["required"] = ["name", *body.get("required", [])]
+        return {"anyOf": [{"const": name, "description": (cls.__doc__ or "").split("\n")[0]}, body]}

@@ -1,0 +1,63 @@
+"""The hooks by which a distribution registers its plug-ins.
+
+An entry point of the group ``mpmkit`` names a module; the module has one function for each kind that it
+provides, marked ``@hookimpl``, which returns the descriptor classes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pluggy
+
+from .equation_of_state import EquationOfState
+from .law import ConstitutiveLaw
+from .order import UpdateOrder
+from .shape import ShapeFunction
+from .velocity import VelocityUpdate
+from .volumetric import VolumetricTreatment
+
+PROJECT = "mpmkit"
+hookspec = pluggy.HookspecMarker(PROJECT)
+hookimpl = pluggy.HookimplMarker(PROJECT)
+
+
+@hookspec
+def mpmkit_shape_functions() -> Iterable[type[ShapeFunction]]:  # type: ignore[empty-body]
+    """Shape functions of this module."""
+
+
+@hookspec
+def mpmkit_update_orders() -> Iterable[type[UpdateOrder]]:  # type: ignore[empty-body]
+    """Update orders of this module."""
+
+
+@hookspec
+def mpmkit_velocity_updates() -> Iterable[type[VelocityUpdate]]:  # type: ignore[empty-body]
+    """Velocity updates of this module."""
+
+
+@hookspec
+def mpmkit_laws() -> Iterable[type[ConstitutiveLaw]]:  # type: ignore[empty-body]
+    """Constitutive laws of this module."""
+
+
+@hookspec
+def mpmkit_volumetric_treatments() -> Iterable[type[VolumetricTreatment]]:  # type: ignore[empty-body]
+    """Volumetric treatments of this module."""
+
+
+@hookspec
+def mpmkit_equations_of_state() -> Iterable[type[EquationOfState]]:  # type: ignore[empty-body]
+    """Equations of state of this module."""
+
+
+KINDS: dict[str, tuple[str, type]] = {
+    "shape": ("mpmkit_shape_functions", ShapeFunction),
+    "order": ("mpmkit_update_orders", UpdateOrder),
+    "velocity": ("mpmkit_velocity_updates", VelocityUpdate),
+    "law": ("mpmkit_laws", ConstitutiveLaw),
+    "volumetric": ("mpmkit_volumetric_treatments", VolumetricTreatment),
+    "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
+}
+"""Kind of plug-in: its hook and its contract."""

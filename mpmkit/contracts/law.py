@@ -1,0 +1,101 @@
+"""Contracts of a constitutive law: the full one, and the short one for generalised Newtonian fluids."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..kernels.tensors import shear_rate, viscous_stress
+from .base import Plugin
+
+REST_SHEAR_RATE = 1e-12
+"""Shear rate, 1/s, that stands for rest, so that a law written as in the paper divides by no zero."""
+
+
+@dataclass(frozen=True)
+class StateVariable:
+    """A quantity that a law remembers at each particle."""
+
+    unit: str
+    description: str
+    shape: tuple[int, ...] = ()
+    initial: Any = 0.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a law is told of the particles that it governs. Tensors are 3 × 3 in every space.
+
+    The components follow the axes of the grid; in two dimensions the third one is out of the plane
+    (the hoop direction of an axisymmetric scene).
+    """
+
+    velocity_gradient: np.ndarray
+    """``(n, 3, 3)``, L_ij = ∂v_i/∂x_j, 1/s."""
+    volume_ratio: np.ndarray
+    """``(n,)``, J, current over initial volume."""
+    pressure: np.ndarray
+    """``(n,)``, of the equation of state, positive in compression, Pa; zero for a law that has its own."""
+    density: float
+    """Initial density, kg/m³."""
+    deformation_gradient: np.ndarray | None = None
+    """``(n, 3, 3)``, F, if the law asks for it."""
+
+
+class ConstitutiveLaw(Plugin):
+    """A full law: from the motion and its own state to the stress.
+
+    The framework adds ``-p I`` of the equation of state, so that a law which uses one returns the extra
+    stress alone; a law with ``uses_equation_of_state = False`` returns the whole Cauchy stress.
+    Stress is tension-positive, in the order xx, yy, zz, yz, xz, xy of the tensor's axes 0, 1, 2.
+    """
+
+    uses_equation_of_state: ClassVar[bool] = True
+    needs_deformation_gradient: ClassVar[bool] = False
+    state: ClassVar[Mapping[str, StateVariable]] = {}
+
+    @abstractmethod
+    def update_stress(
+        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+    ) -> None:
+        """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``."""
+
+    def wave_speed(self, density: float, sound_speed: float | None) -> float:
+        """Fastest wave, m/s, for the acoustic limit of the time step."""
+        if sound_speed is None:
+            raise ValueError(f"law '{self.name}' has no equation of state and must override wave_speed")
+        return sound_speed
+
+    def largest_viscosity(self, largest_shear_rate: float) -> float:
+        """Largest viscosity, Pa s, between rest and a shear rate, for the viscous limit of the time step."""
+        return 0.0
+
+    def strain_energy(self, motion: Motion, state: Mapping[str, np.ndarray]) -> np.ndarray | float:
+        """Elastic energy per initial volume, J/m³, ``(n,)``; zero for a fluid."""
+        return 0.0
+
+
+class GeneralisedNewtonianLaw(ConstitutiveLaw):
+    """A fluid given by its apparent viscosity alone: sigma = -p I + 2 mu(γ̇) (D - tr(D)/3 I).
+
+    This is eq. 6 of Ferreira et al. with the tensor that the printed equation lost, and
+    γ̇ = √(2 D':D') with the deviatoric rate of deformation D'.
+    """
+
+    @abstractmethod
+    def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
+        """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
+
+    def update_stress(
+        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+    ) -> None:
+        rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
+        viscous_stress(motion.velocity_gradient, self.apparent_viscosity(rate), stress)
+
+    def largest_viscosity(self, largest_shear_rate: float) -> float:
+        rates = np.geomspace(REST_SHEAR_RATE, max(largest_shear_rate, 1.0), 400)
+        return float(np.max(self.apparent_viscosity(rates)))

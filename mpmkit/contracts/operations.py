@@ -1,0 +1,46 @@
+"""The named operations of one step: the vocabulary in which orders and velocity updates are written."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+
+class Operations(Protocol):
+    """Operations on all particles and all nodes of a scene.
+
+    Shape functions are evaluated once, at the positions of the start of the step, and every operation of
+    the step uses them.
+    """
+
+    def map_to_grid(self, *, forces: bool = True) -> None:
+        """Particles to nodes: mass, momentum and, if asked, the internal force of the present stress."""
+
+    def map_forces(self) -> None:
+        """Particles to nodes: the internal force of the present stress alone."""
+
+    def solve_momentum(self, dt: float) -> None:
+        """Advance the nodal velocity, v ← v + dt f / m, with gravity and the conditions on the faces."""
+
+    def map_to_particles(self, dt: float) -> None:
+        """Nodes to particles: velocity, as the velocity update has it, and position."""
+
+    def remap_velocity(self) -> None:
+        """Replace the nodal velocity by that of the updated particles (MUSL)."""
+
+    def update_velocity_gradient(self) -> None:
+        """Nodes to particles: gradient of the present nodal velocity."""
+
+    def update_stress(self, dt: float) -> None:
+        """Deformation, volume ratio, pressure and stress of every particle."""
+
+    def advance(self, dt: float, *, flip: float) -> None:
+        """x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ, with ṽ the new nodal velocity at the particle
+        and Δṽ what the step changed in it. Used by velocity updates."""
+
+    def particles_to_nodes(self, values: np.ndarray, mass_weighted: bool = False) -> np.ndarray:
+        """Shape-function average of a particle field, weighted with volume or mass: ``(n,)`` to nodes."""
+
+    def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
+        """Interpolate a nodal field at the particles."""

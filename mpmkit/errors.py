@@ -1,0 +1,39 @@
+"""Every way a run can end badly, each with the exit status that it gives the command line."""
+
+from __future__ import annotations
+
+
+class MpmkitError(Exception):
+    """An error that is told in one sentence, without a traceback."""
+
+    exit_status = 1
+
+
+class CaseError(MpmkitError):
+    """Bad input: the sentence names the field, the value and what is allowed."""
+
+    exit_status = 2
+
+
+class GuardStop(MpmkitError):
+    """A run that a guard stopped; what was written so far is kept.
+
+    Attributes:
+        guard: short name of the guard, for ``summary.json``.
+        step: number of the step in which it stopped.
+        particle: number of the particle concerned, or None.
+    """
+
+    exit_status = 3
+
+    def __init__(self, guard: str, message: str, *, step: int, particle: int | None = None) -> None:
+        super().__init__(message)
+        self.guard = guard
+        self.step = step
+        self.particle = particle
+
+
+class OutputError(MpmkitError):
+    """Results could not be written: disk full, no permission, directory taken."""
+
+    exit_status = 4

@@ -1,0 +1,131 @@
+"""What every shape answers: where it is, what it contains and how large it is."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from ..errors import CaseError
+from ..spaces import Space
+
+TOLERANCE = 1e-9
+"""Part of a shape's largest extent by which a point may miss its surface and still be on it."""
+
+
+class Shape(BaseModel):
+    """Base of the shapes; its public methods refuse a shape that the space cannot hold.
+
+    A shape is a solid. A plane-strain scene is its cross-section through its axis, 1 m thick: an upright
+    cylinder becomes a rectangle of width 2 R, a sphere a disc. An axisymmetric scene turns its half
+    cross-section about r = 0. A point on the surface, to 1e-9 of the largest extent, is inside: whether a
+    lattice point that falls on a face is taken is then not left to rounding, and a symmetric body on a
+    symmetric lattice gets symmetric particles.
+
+    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_measure`` and ``_volume``.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def check(self, space: Space) -> None:
+        """Refuse a space that cannot hold the shape; for use within pydantic's validators.
+
+        Raises:
+            ValueError: one sentence with the field, its value and what is allowed.
+        """
+        if problem := self._problem(space):
+            raise ValueError(problem)
+
+    def bounds(self, space: Space) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner, m, each (dim,), of the box around the shape; r ≥ 0 if axisymmetric.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        lower, upper = self._bounds(space)
+        return np.array(lower, dtype=float), np.array(upper, dtype=float)
+
+    def contains(self, points: np.ndarray, space: Space) -> np.ndarray:
+        """Whether each of ``points``, m, (n, dim), is inside or on the surface; bool, (n,).
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        points = np.asarray(points, dtype=float)
+        lower, upper = self._bounds(space)
+        tolerance = TOLERANCE * max(top - bottom for bottom, top in zip(lower, upper, strict=True))
+        inside = self._contains(points, space, tolerance)
+        return inside & (points[:, 0] >= -tolerance) if space.radial else inside
+
+    def measure(self, space: Space) -> float:
+        """Size in the coordinates of the space: m³ in 3-D, else m² of the (half) cross-section.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        return float(self._measure(space))
+
+    def volume(self, space: Space) -> float:
+        """Exact volume, m³: of the full circle if axisymmetric, of 1 m of thickness in plane strain.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        return float(self._volume(space))
+
+    def _require(self, space: Space) -> None:
+        if problem := self._problem(space):
+            raise CaseError(problem)
+
+    def _wrong_length(self, field: str, value: list[float], space: Space) -> str | None:
+        if len(value) == space.dim:
+            return None
+        return (
+            f"the {self.kind}'s {field} is {value}, but the space {space.name} needs "  # type: ignore[attr-defined]
+            f"{space.dim} numbers ({', '.join(space.axes)})"
+        )
+
+    def _off_axis(self, field: str, value: list[float], space: Space) -> str | None:
+        if not space.radial or value[0] == 0:
+            return None
+        return (
+            f"the {self.kind}'s {field} is {value}, but in the space {space.name} it must be "  # type: ignore[attr-defined]
+            "[0, z]: the body turns about r = 0"
+        )
+
+    @abstractmethod
+    def _problem(self, space: Space) -> str | None:
+        """Why ``space`` cannot hold the shape, in one sentence, or None."""
+
+    @abstractmethod
+    def _bounds(self, space: Space) -> tuple[list[float], list[float]]: ...
+
+    @abstractmethod
+    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray: ...
+
+    @abstractmethod
+    def _measure(self, space: Space) -> float: ...
+
+    @abstractmethod
+    def _volume(self, space: Space) -> float: ...
+
+
+def squared_distance(points: np.ndarray, centre: list[float]) -> np.ndarray:
+    """Σ (x_a − c_a)² over the axes that ``centre`` has, (n,); one axis at a time keeps temporaries small."""
+    total = np.zeros(len(points))
+    for axis, middle in enumerate(centre):
+        offset = points[:, axis] - middle
+        offset *= offset
+        total += offset
+    return total
+
+
+def disc_area(radius: float) -> float:
+    """π R², m²."""
+    return math.pi * radius**2

@@ -1,0 +1,134 @@
+"""A body given by a closed surface mesh in a file."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from ..contracts.base import quantity
+from ..errors import CaseError
+from ..spaces import Space
+from .base import Shape
+from .orientation import outward
+from .parity import inside_surface
+
+
+class Mesh(Shape):
+    """Solid inside a closed surface of triangles or quadrilaterals, x = scale · x_file + translate.
+
+    Only in 3-D; needs ``mpmkit[mesh]``. Normals that point inwards are turned; a shell within another is a
+    cavity.
+    """
+
+    kind: Literal["mesh"]
+    file: str = Field(
+        description="path to a closed surface mesh that meshio reads (STL, OBJ, PLY, VTU, ...); "
+        "a relative one starts from the working directory"
+    )
+    scale: float = Field(
+        default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
+    )
+    translate: list[float] | None = quantity(
+        "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
+    )
+
+    def _surface(self) -> Any:
+        path = Path(self.file).absolute()
+        try:
+            changed = path.stat().st_mtime_ns
+        except (OSError, ValueError):
+            raise CaseError(f"the mesh's file is {self.file}, but there is no such file") from None
+        shift = (0.0, 0.0, 0.0) if self.translate is None else tuple(self.translate)
+        # The time of change is part of the key, so that a process that rewrites a mesh reads the new one.
+        return _load(str(path), changed, self.file, self.scale, shift)
+
+    def _problem(self, space: Space) -> str | None:
+        if space.dim != 3:
+            return (
+                f"the mesh's file is {self.file}, but the space is {space.name}: a mesh is allowed only in 3d"
+            )
+        try:
+            self._surface()
+        except CaseError as error:
+            return str(error)
+        return None
+
+    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
+        lower, upper = self._surface().bounds.tolist()
+        return lower, upper
+
+    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
+        # The tolerance is the test's own, 1e-6: the file may hold its corners in single precision.
+        triangles = np.asarray(self._surface().triangles)
+        inside = np.zeros(len(points), dtype=bool)
+        for start in range(0, len(points), _CHUNK):
+            inside[start : start + _CHUNK] = inside_surface(points[start : start + _CHUNK], triangles)
+        return inside
+
+    def _measure(self, space: Space) -> float:
+        return self._volume(space)
+
+    def _volume(self, space: Space) -> float:
+        return float(self._surface().volume)
+
+
+_CHUNK = 1 << 20
+
+
+@lru_cache(maxsize=8)
+def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> Any:
+    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards; ``shown`` names it in errors."""
+    try:
+        import trimesh
+    except ImportError:
+        raise CaseError(
+            f"the mesh's file is {shown}, but bodies given as a mesh need trimesh: pip install 'mpmkit[mesh]'"
+        ) from None
+    vertices, faces = _read(path, shown)
+    surface = trimesh.Trimesh(vertices, faces, process=False)
+    # STL repeats each corner in each of its triangles; triangles that shrink to a line by joining them go.
+    surface.merge_vertices(merge_tex=True, merge_norm=True)
+    faces = np.asarray(surface.faces)
+    degenerate = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
+    surface.update_faces(~degenerate)
+    if len(surface.faces) == 0 or not surface.is_watertight:
+        raise CaseError(
+            f"the mesh's file is {shown}, but its surface is not closed: "
+            "each edge must belong to exactly two triangles"
+        )
+    vertices = np.asarray(surface.vertices) * scale + shift
+    closed = trimesh.Trimesh(vertices, outward(vertices, np.asarray(surface.faces)), process=False)
+    if not closed.volume > 0:
+        raise CaseError(f"the mesh's file is {shown}, but its surface encloses no volume")
+    return closed
+
+
+def _read(path: str, shown: str) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (v, 3) and triangles (t, 3) of a file; quadrilaterals are split in two."""
+    import meshio  # here, because it is slow to import and most cases have no mesh
+
+    try:
+        # meshio prints its complaints and, for some files, leaves by sys.exit.
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            data = meshio.read(path)
+        blocks = [block.data for block in data.cells if block.type == "triangle"]
+        for block in data.cells:
+            if block.type == "quad":
+                blocks += [block.data[:, [0, 1, 2]], block.data[:, [0, 2, 3]]]
+        vertices = np.asarray(data.points, dtype=float)
+    except (Exception, SystemExit):
+        raise CaseError(
+            f"the mesh's file is {shown}, but meshio cannot read it: "
+            "a surface mesh such as STL, OBJ or PLY is needed"
+        ) from None
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or sum(map(len, blocks)) == 0:
+        raise CaseError(f"the mesh's file is {shown}, but it has no triangles in space")
+    if not np.isfinite(vertices).all():
+        raise CaseError(f"the mesh's file is {shown}, but some of its corners are not finite numbers")
+    return vertices, np.concatenate(blocks).astype(np.int64)

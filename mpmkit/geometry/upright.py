@@ -1,0 +1,63 @@
+"""A body of circular cross-section that stands on the middle of its bottom disc."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..contracts.base import quantity
+from ..spaces import Space
+from .base import Shape, squared_distance
+
+
+class Upright(Shape):
+    """R(z) = R_b + (R_t − R_b)(z − z_b)/h along the last axis; what frustum and cylinder share.
+
+    Volume π h (R_b² + R_b R_t + R_t²)/3; in plane strain (R_b + R_t) h · 1 m.
+    """
+
+    height: float = quantity("m", "height along the last axis", gt=0)
+    base: list[float] | None = quantity(
+        "m", "centre of the bottom disc; the origin unless told", default=None, min_length=2, max_length=3
+    )
+
+    def _radii(self) -> tuple[float, float]:
+        """Radius at the bottom and at the top, m."""
+        raise NotImplementedError
+
+    def _foot(self, space: Space) -> list[float]:
+        return [0.0] * space.dim if self.base is None else self.base
+
+    def _problem(self, space: Space) -> str | None:
+        foot = self._foot(space)
+        return self._wrong_length("base", foot, space) or self._off_axis("base", foot, space)
+
+    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
+        *middle, bottom = self._foot(space)
+        radius = max(self._radii())
+        lower = [0.0] if space.radial else [x - radius for x in middle]
+        return [*lower, bottom], [*(x + radius for x in middle), bottom + self.height]
+
+    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
+        *middle, bottom = self._foot(space)
+        bottom_radius, top_radius = self._radii()
+        level = points[:, -1] - bottom
+        inside = (level >= -tolerance) & (level <= self.height + tolerance)
+        # Above the tip of a full cone, within the tolerance, the radius would come out negative.
+        radius = (
+            np.maximum(bottom_radius + (top_radius - bottom_radius) / self.height * level, 0.0) + tolerance
+        )
+        return inside & (squared_distance(points, middle) <= radius * radius)
+
+    def _measure(self, space: Space) -> float:
+        if space.dim == 3:
+            return self._volume(space)
+        width = sum(self._radii())
+        return width * self.height / (2 if space.radial else 1)
+
+    def _volume(self, space: Space) -> float:
+        if space.dim == 2 and not space.radial:
+            return self._measure(space)
+        bottom, top = self._radii()
+        return math.pi * self.height / 3 * (bottom**2 + bottom * top + top**2)

@@ -1,0 +1,58 @@
+"""How the half-sizes of the particle domains follow the deformation."""
+
+from __future__ import annotations
+
+import math
+
+from numba import prange
+
+from .compile import CHUNK, chunk_count, kernel
+
+
+@kernel()
+def follow_volume(volume_ratio, initial_half_size, largest, half_size):
+    """l = l0 J^(1/dim), at most ``largest``."""
+    n, dim = half_size.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            factor = volume_ratio[p] ** (1 / dim)
+            for a in range(dim):
+                half_size[p, a] = min(initial_half_size[p, a] * factor, largest)
+
+
+@kernel()
+def follow_stretch(F, initial_half_size, largest, half_size):
+    """l_i = l0_i U_ii with the right stretch U = √(FᵀF), at most ``largest`` (Charlton et al. 2017).
+
+    The root in closed form (Hoger & Carlson 1984): with the invariants i1, i2, i3 of U,
+    U = (i1 i3 I + (i1² - i2) C - C²) / (i1 i2 - i3).
+    """
+    n, dim = half_size.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            xx = F[p, 0, 0] ** 2 + F[p, 1, 0] ** 2 + F[p, 2, 0] ** 2
+            yy = F[p, 0, 1] ** 2 + F[p, 1, 1] ** 2 + F[p, 2, 1] ** 2
+            zz = F[p, 0, 2] ** 2 + F[p, 1, 2] ** 2 + F[p, 2, 2] ** 2
+            yz = F[p, 0, 1] * F[p, 0, 2] + F[p, 1, 1] * F[p, 1, 2] + F[p, 2, 1] * F[p, 2, 2]
+            xz = F[p, 0, 0] * F[p, 0, 2] + F[p, 1, 0] * F[p, 1, 2] + F[p, 2, 0] * F[p, 2, 2]
+            xy = F[p, 0, 0] * F[p, 0, 1] + F[p, 1, 0] * F[p, 1, 1] + F[p, 2, 0] * F[p, 2, 1]
+            # Eigenvalues of C by the trigonometric formula for a symmetric 3 × 3 matrix (Smith 1961).
+            mean = (xx + yy + zz) / 3
+            off = yz * yz + xz * xz + xy * xy
+            spread = math.sqrt(((xx - mean) ** 2 + (yy - mean) ** 2 + (zz - mean) ** 2 + 2 * off) / 6)
+            angle = 0.0
+            if spread > 1e-14 * mean:
+                a, b, d = (xx - mean) / spread, (yy - mean) / spread, (zz - mean) / spread
+                e, f, g = yz / spread, xz / spread, xy / spread
+                half_det = (a * (b * d - e * e) - g * (g * d - e * f) + f * (g * e - b * f)) / 2
+                angle = math.acos(min(1.0, max(-1.0, half_det))) / 3
+            tiny = 1e-12 * mean
+            u1 = math.sqrt(max(mean + 2 * spread * math.cos(angle), tiny))
+            u2 = math.sqrt(max(mean + 2 * spread * math.cos(angle - 2 * math.pi / 3), tiny))
+            u3 = math.sqrt(max(mean + 2 * spread * math.cos(angle + 2 * math.pi / 3), tiny))
+            i1, i2, i3 = u1 + u2 + u3, u1 * u2 + u2 * u3 + u3 * u1, u1 * u2 * u3
+            diagonal = (xx, yy, zz)
+            squares = (xx * xx + xy * xy + xz * xz, xy * xy + yy * yy + yz * yz, xz * xz + yz * yz + zz * zz)
+            for axis in range(dim):
+                stretch = (i1 * i3 + (i1 * i1 - i2) * diagonal[axis] - squares[axis]) / (i1 * i2 - i3)
+                half_size[p, axis] = min(initial_half_size[p, axis] * stretch, largest)

@@ -1,0 +1,177 @@
+"""Nodes alone: images at the faces, velocities, the momentum equation and its boundary conditions.
+
+A mirror face (a slip wall or a symmetry plane) is exact: what particles put on the ghost nodes behind it is
+folded onto the image in front of it with the normal component reversed, as the mirrored scene would put it
+there, and after the momentum equation the ghosts get the image's velocity back. A periodic face folds and
+fills in the same way.
+
+``nodes`` is (count, NODE); ``shape`` and ``strides`` have three entries, the third 1 in two dimensions.
+``walls[a, side]`` is the index of the wall's plane of nodes, ``faces[a, side]`` one of the codes below.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit, prange
+
+from .compile import kernel
+
+OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
+
+
+@kernel()
+def clear(nodes):
+    """All records to zero."""
+    for i in prange(len(nodes)):
+        for q in range(nodes.shape[1]):
+            nodes[i, q] = 0.0
+
+
+@njit(cache=True)
+def _add_plane(nodes, shape, strides, axis, source, target, first, last, reverse0, reverse1):
+    """Move slots first..last-1 of plane ``source`` onto plane ``target``; two of them change their sign."""
+    if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
+        return
+    b, c = (axis + 1) % 3, (axis + 2) % 3
+    for i in range(shape[b]):
+        for j in range(shape[c]):
+            offset = i * strides[b] + j * strides[c]
+            src, dst = source * strides[axis] + offset, target * strides[axis] + offset
+            for q in range(first, last):
+                value = nodes[src, q]
+                nodes[dst, q] += -value if q == reverse0 or q == reverse1 else value
+                nodes[src, q] = 0.0
+
+
+@njit(cache=True)
+def _copy_plane(nodes, shape, strides, axis, source, target, first, last, reverse0, reverse1):
+    """Copy slots first..last-1 of plane ``source`` to plane ``target``; two of them change their sign."""
+    if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
+        return
+    b, c = (axis + 1) % 3, (axis + 2) % 3
+    for i in range(shape[b]):
+        for j in range(shape[c]):
+            offset = i * strides[b] + j * strides[c]
+            src, dst = source * strides[axis] + offset, target * strides[axis] + offset
+            for q in range(first, last):
+                value = nodes[src, q]
+                nodes[dst, q] = -value if q == reverse0 or q == reverse1 else value
+
+
+@njit(cache=True)
+def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
+    """Add what lies on ghost nodes to their images, slots first..last-1.
+
+    With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
+    """
+    for a in range(dim):
+        r0, r1 = (1 + a, 1 + dim + a) if vectors else (-1, -1)
+        if faces[a, 0] == PERIODIC:
+            k0 = walls[a, 0]
+            cells = walls[a, 1] - k0
+            for g in (-1, cells, cells + 1):
+                _add_plane(nodes, shape, strides, a, k0 + g, k0 + g % cells, first, last, -1, -1)
+            continue
+        for side in range(2):
+            if faces[a, side] == MIRROR or faces[a, side] == FRICTION:
+                inward = 1 - 2 * side
+                k = walls[a, side]
+                _add_plane(nodes, shape, strides, a, k - inward, k + inward, first, last, r0, r1)
+
+
+@njit(cache=True)
+def fill(nodes, shape, strides, dim, faces, walls, first, last, vectors):
+    """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
+    for back in range(dim):
+        a = dim - 1 - back
+        r0, r1 = (1 + a, 1 + dim + a) if vectors else (-1, -1)
+        if faces[a, 0] == PERIODIC:
+            k0 = walls[a, 0]
+            cells = walls[a, 1] - k0
+            for g in (-1, cells, cells + 1):
+                _copy_plane(nodes, shape, strides, a, k0 + g % cells, k0 + g, first, last, -1, -1)
+            continue
+        for side in range(2):
+            if faces[a, side] == MIRROR or faces[a, side] == FRICTION:
+                inward = 1 - 2 * side
+                k = walls[a, side]
+                _copy_plane(nodes, shape, strides, a, k + inward, k - inward, first, last, r0, r1)
+
+
+@njit(cache=True)
+def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
+    """Boundary conditions on the velocity and, once ``solved``, on its change."""
+    for a in range(dim):
+        for side in range(2):
+            code = faces[a, side]
+            if code == OPEN or code == PERIODIC:
+                continue
+            inward = 1 - 2 * side
+            planes = 2 if code == STICK else 1  # a stick wall holds its ghost nodes as well
+            for depth in range(planes):
+                k = walls[a, side] - depth * inward
+                if not 0 <= k < shape[a]:
+                    continue
+                b, c = (a + 1) % 3, (a + 2) % 3
+                for i in range(shape[b]):
+                    for j in range(shape[c]):
+                        node = nodes[k * strides[a] + i * strides[b] + j * strides[c]]
+                        if code == MIRROR:
+                            node[1 + a] = 0.0
+                            if solved:
+                                node[1 + dim + a] = 0.0
+                        elif code == STICK:
+                            for d in range(dim):
+                                node[1 + d] = 0.0
+                                if solved:
+                                    node[1 + dim + d] = 0.0
+                        else:
+                            _rub(node, dim, a, inward, friction[a, side], solved)
+
+
+@njit(cache=True)
+def _rub(node, dim, a, inward, coefficient, solved):
+    """Coulomb's law at one node of a wall: no motion into it, drag at most coefficient × push."""
+    push = -inward * node[1 + a]  # what the wall must take up, as a change of velocity
+    if push <= 0.0:
+        return
+    if solved:
+        node[1 + dim + a] -= node[1 + a]
+        slip = 0.0
+        for d in range(dim):
+            if d != a:
+                slip += node[1 + d] ** 2
+        slip = math.sqrt(slip)
+        keep = 1.0 - min(1.0, coefficient * push / slip) if slip > 0.0 else 0.0
+        for d in range(dim):
+            if d != a:
+                node[1 + dim + d] -= (1.0 - keep) * node[1 + d]
+                node[1 + d] *= keep
+    node[1 + a] = 0.0
+
+
+@kernel()
+def momentum_to_velocity(nodes, shape, strides, dim, faces, walls, friction):
+    """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are."""
+    for i in prange(len(nodes)):
+        m = nodes[i, 0]
+        if m > 0.0:
+            for d in range(dim):
+                nodes[i, 1 + d] /= m
+    _constrain(nodes, shape, strides, dim, faces, walls, friction, False)
+    fill(nodes, shape, strides, dim, faces, walls, 1, 1 + dim, True)
+
+
+@kernel()
+def solve_momentum(nodes, shape, strides, dim, faces, walls, friction, gravity, dt):
+    """Δv = dt (f/m + g), v ← v + Δv, with the conditions on the faces and the ghosts filled."""
+    for i in prange(len(nodes)):
+        m = nodes[i, 0]
+        if m > 0.0:
+            for d in range(dim):
+                change = dt * (nodes[i, 1 + dim + d] / m + gravity[d])
+                nodes[i, 1 + d] += change
+                nodes[i, 1 + dim + d] = change
+    _constrain(nodes, shape, strides, dim, faces, walls, friction, True)
+    fill(nodes, shape, strides, dim, faces, walls, 1, 1 + 2 * dim, True)

@@ -1,0 +1,21 @@
+"""What a run leaves behind: the history, the frames, the summary and the log, in one run directory."""
+
+from .frames import FrameWriter, read_frame, read_frames
+from .history import History
+from .log import open_log
+from .run_directory import RunDirectory
+from .summary import first_crossing, summarise
+from .variables import PARTICLE_VARIABLES, Variable
+
+__all__ = [
+    "PARTICLE_VARIABLES",
+    "FrameWriter",
+    "History",
+    "RunDirectory",
+    "Variable",
+    "first_crossing",
+    "open_log",
+    "read_frame",
+    "read_frames",
+    "summarise",
+]

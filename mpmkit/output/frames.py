@@ -1,0 +1,100 @@
+"""Frames: the particles at a few times, one VTU file each, listed with their times in a PVD for ParaView."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import CaseError
+from ..spaces import Space
+from .atomic import cannot_write, replacing
+
+LIST_NAME = "frames.pvd"
+
+
+class FrameWriter:
+    """Writes frames into a directory, which starts without any.
+
+    Args:
+        directory: the ``frames/`` of a run; made if it is not there.
+        space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, 0, b).
+    """
+
+    def __init__(self, directory: Path, space: Space) -> None:
+        self.directory = Path(directory)
+        self._planar = space.dim == 2
+        self._frames: dict[str, float] = {}
+        try:
+            self.directory.mkdir(parents=True, exist_ok=True)
+            # The list goes first: a list without its frames would be worse than frames without a list.
+            for old in (self.directory / LIST_NAME, *self.directory.glob("frame_*.vtu")):
+                old.unlink(missing_ok=True)
+        except OSError as error:
+            raise cannot_write(self.directory, error) from error
+
+    def write(self, time: float, step: int, fields: Mapping[str, np.ndarray], position: np.ndarray) -> Path:
+        """Write the particles as they are at a time, and list the frame.
+
+        Args:
+            time: simulated time, s.
+            step: number of the step, which names the file; a frame of the same step is replaced.
+            fields: particle fields ``(n,)`` or ``(n, k)``; those ``(n, dim)`` are vectors.
+            position: ``(n, dim)``, m.
+
+        Raises:
+            OutputError: where the frame or the list cannot be written.
+        """
+        import meshio
+
+        vertices = [("vertex", np.arange(len(position))[:, None])]
+        data = {name: self._in_space(np.asarray(field)) for name, field in fields.items()}
+        mesh = meshio.Mesh(self._in_space(np.asarray(position)), vertices, point_data=data)
+        path = self.directory / f"frame_{step:06d}.vtu"
+        with replacing(path) as partial:
+            meshio.write(partial, mesh, file_format="vtu", binary=True)
+        self._frames[path.name] = float(time)
+        self._write_list()
+        return path
+
+    def _in_space(self, values: np.ndarray) -> np.ndarray:
+        if self._planar and values.ndim == 2 and values.shape[1] == 2:
+            return np.insert(values, 1, 0, axis=1)
+        return values
+
+    def _write_list(self) -> None:
+        root = ET.Element("VTKFile", type="Collection", version="0.1")
+        collection = ET.SubElement(root, "Collection")
+        for name, time in self._frames.items():
+            # repr gives back the very same float when it is read
+            ET.SubElement(collection, "DataSet", timestep=repr(time), group="", part="0", file=name)
+        ET.indent(root)
+        with replacing(self.directory / LIST_NAME) as partial:
+            ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
+
+
+def read_frames(directory: Path) -> list[tuple[float, Path]]:
+    """Times, s, and files of the frames of a directory, in order of time; none where there is no list.
+
+    Raises:
+        CaseError: where the list is not one.
+    """
+    path = Path(directory) / LIST_NAME
+    if not path.is_file():
+        return []
+    try:
+        listed = ET.parse(path).getroot().iter("DataSet")
+        frames = [(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in listed]
+    except (ET.ParseError, KeyError, ValueError) as error:
+        raise CaseError(f"'{path}' is not a list of frames: {error}") from error
+    return sorted(frames)
+
+
+def read_frame(path: Path) -> dict[str, np.ndarray]:
+    """The fields of a frame by name, ``(n,)`` or ``(n, k)``, and ``position``, ``(n, 3)``, m."""
+    import meshio
+
+    mesh = meshio.read(path, file_format="vtu")
+    return {"position": mesh.points, **mesh.point_data}

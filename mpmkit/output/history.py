@@ -1,0 +1,133 @@
+"""The history: one row for each of many times, kept in memory and rewritten to NetCDF as the run goes."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .atomic import cannot_write, replacing
+from .variables import PARTICLE_VARIABLES, Variable, tensor_components
+
+if TYPE_CHECKING:
+    import xarray
+
+FLUSH_INTERVAL = 5.0
+"""Least wall time, s, between two rewrites of the file."""
+FLUSH_PAUSE = 20
+"""Least pause after a rewrite, as a multiple of what it took: at most 5 % of the wall time goes into them."""
+
+
+class History:
+    """Rows of scalars, vectors and, if asked for, particle fields.
+
+    NetCDF cannot be appended to through xarray, so the whole file is rewritten, never more often than it
+    is cheap: a killed process loses the rows since the last rewrite and nothing else.
+
+    Args:
+        columns: what every row holds.
+        attributes: global attributes of the dataset; may be added to until the last write.
+        axes: names of the axes of the space, such as ``("r", "z")``.
+    """
+
+    def __init__(self, columns: Sequence[Variable], attributes: dict[str, str], axes: Sequence[str]) -> None:
+        self.attributes = attributes
+        self._columns = {column.name: column for column in columns}
+        self._axes = tuple(axes)
+        self._times: list[float] = []
+        self._rows: dict[str, list[float | np.ndarray]] = {name: [] for name in self._columns}
+        self._particles: dict[str, list[np.ndarray]] | None = None
+        self._next_flush = -np.inf  # the first row is written at once: a full disk is told of at the start
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    def record(
+        self,
+        time: float,
+        values: Mapping[str, float | np.ndarray],
+        particles: Mapping[str, np.ndarray] | None = None,
+    ) -> None:
+        """Append a row.
+
+        Args:
+            time: simulated time, s.
+            values: a number, or a vector ``(dim,)``, for every column, in the column's units.
+            particles: fields named in ``PARTICLE_VARIABLES`` in the order of particle numbers: ``(n,)``,
+                vectors ``(n, dim)``, stress ``(n, 6)``. The same fields in every row.
+        """
+        if values.keys() != self._rows.keys():
+            raise ValueError(f"a row needs {sorted(self._rows)} and was given {sorted(values)}")
+        particles = particles or {}
+        if self._particles is None:
+            self._particles = {name: [] for name in particles}
+        if particles.keys() != self._particles.keys():
+            raise ValueError(
+                f"a row needs {sorted(self._particles)} of the particles, given {sorted(particles)}"
+            )
+        self._times.append(float(time))
+        for name, row in self._rows.items():
+            row.append(np.array(values[name], dtype=float))
+        for name, field in self._particles.items():
+            field.append(np.array(particles[name], dtype=float))
+
+    def dataset(self) -> xarray.Dataset:
+        """The rows so far: dims ``(time)``, ``(time, component)``, ``(time, particle, …)``."""
+        import xarray
+
+        variables = {}
+        for name, column in self._columns.items():
+            trailing = ("component",) if column.component else ()
+            shape = (len(self), len(self._axes)) if column.component else (len(self),)
+            attributes = {"units": column.units, "long_name": column.long_name}
+            variables[name] = (("time", *trailing), np.reshape(self._rows[name], shape), attributes)
+        for name, rows in (self._particles or {}).items():
+            of_particle = PARTICLE_VARIABLES[name]
+            attributes = {"units": of_particle.units, "long_name": of_particle.long_name}
+            variables[name] = (("time", "particle", *of_particle.trailing), np.stack(rows), attributes)
+        # Units of a bare "s", without "since", so that no reader takes the numbers for dates or durations.
+        time = ("time", np.array(self._times), {"units": "s", "long_name": "simulated time"})
+        dataset = xarray.Dataset(variables, {"time": time}, self.attributes)
+        return dataset.assign_coords(self._labels(dataset))
+
+    def _labels(self, dataset: xarray.Dataset) -> dict[str, tuple]:
+        """Coordinates of the dimensions that the dataset has, beside time."""
+
+        def coordinate(dimension: str, labels: Sequence, long_name: str) -> tuple:
+            return dimension, np.array(labels), {"units": "1", "long_name": long_name}
+
+        labels = {
+            "component": coordinate("component", self._axes, "axis"),
+            "tensor_component": coordinate("tensor_component", tensor_components(self._axes), "pair of axes"),
+            "particle": coordinate(
+                "particle", range(dataset.sizes.get("particle", 0)), "number of the particle"
+            ),
+        }
+        return {name: label for name, label in labels.items() if name in dataset.dims}
+
+    def write(self, path: Path) -> None:
+        """Write the rows so far to NetCDF; the file at ``path`` is whole at every moment.
+
+        Raises:
+            OutputError: where the file cannot be written.
+        """
+        dataset = self.dataset()
+        with replacing(path) as partial:
+            try:
+                dataset.to_netcdf(partial, engine="netcdf4")
+            except (
+                RuntimeError
+            ) as error:  # how netCDF4 reports a failure in the middle of a file: a full disk
+                raise cannot_write(path, error) from error
+
+    def flush_if_due(self, path: Path) -> None:
+        """Write if the last write is long enough ago; to be called after every row."""
+        start = clock.monotonic()
+        if start < self._next_flush:
+            return
+        self.write(path)
+        end = clock.monotonic()
+        self._next_flush = max(start + FLUSH_INTERVAL, end + FLUSH_PAUSE * (end - start))

@@ -1,0 +1,54 @@
+"""The log of a run: what the logger ``mpmkit`` says, with time stamps."""
+
+from __future__ import annotations
+
+import logging
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+
+from .atomic import cannot_write
+
+LOGGER = logging.getLogger("mpmkit")
+
+
+class RunLog(logging.FileHandler):
+    """A handler that listens to ``mpmkit`` until it is closed; also a context manager."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path, encoding="utf-8")
+        self.setFormatter(logging.Formatter("%(asctime)s %(levelname)-7s %(message)s"))
+        self._level_before = LOGGER.level
+        if not LOGGER.isEnabledFor(logging.INFO):
+            LOGGER.setLevel(logging.INFO)
+        LOGGER.addHandler(self)
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Let it pass: a run is not worth ending for its log, and a full disk stops the history as well."""
+
+    def close(self) -> None:
+        if self in LOGGER.handlers:  # closed once by the run, and once more by logging at exit
+            LOGGER.removeHandler(self)
+            LOGGER.setLevel(self._level_before)
+        with suppress(OSError):  # the last lines may not fit on the disk
+            super().close()
+
+    def __enter__(self) -> RunLog:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def open_log(path: Path) -> RunLog:
+    """Start to log to a file, at the end of what is in it.
+
+    Raises:
+        OutputError: where the file cannot be opened.
+    """
+    try:
+        return RunLog(Path(path))
+    except OSError as error:
+        raise cannot_write(Path(path), error) from error

@@ -1,0 +1,50 @@
+"""The variables of a history: their names, units, descriptions and components."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A column of the history: a number, or with ``component`` a vector along the axes of the space."""
+
+    name: str
+    units: str
+    long_name: str
+    component: bool = False
+
+
+@dataclass(frozen=True)
+class ParticleVariable:
+    """A particle field of the history; ``trailing`` are its dimensions after ``(time, particle)``."""
+
+    units: str
+    long_name: str
+    trailing: tuple[str, ...] = ()
+
+
+PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
+    "position": ParticleVariable("m", "position of the particle", ("component",)),
+    "velocity": ParticleVariable("m/s", "velocity of the particle", ("component",)),
+    "stress": ParticleVariable("Pa", "Cauchy stress, positive in tension", ("tensor_component",)),
+    "pressure": ParticleVariable("Pa", "pressure, positive in compression"),
+    "volume_ratio": ParticleVariable("1", "current over initial volume"),
+}
+"""What ``output.particle_history`` may name."""
+
+OUT_OF_PLANE = {("x", "z"): "y", ("r", "z"): "t"}
+"""Name of axis 2 of a tensor where the grid has two axes; t is the hoop direction θ."""
+
+
+def tensor_components(axes: Sequence[str]) -> list[str]:
+    """Names of the six components of a symmetric tensor, in the order 00, 11, 22, 12, 02, 01 of its axes.
+
+    In 3-D that is xx, yy, zz, yz, xz, xy. In two dimensions axis 1 is the vertical and axis 2 is out of the
+    plane, and the names say so: rr, zz, tt, tz, rt, rz.
+    """
+    first, second, *rest = axes
+    third = rest[0] if rest else OUT_OF_PLANE[first, second]
+    mixed = ((second, third), (first, third), (first, second))
+    return [2 * axis for axis in (first, second, third)] + ["".join(sorted(pair)) for pair in mixed]

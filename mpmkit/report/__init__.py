@@ -1,0 +1,43 @@
+"""Pictures of a run, drawn from its directory alone, so that they can be drawn again at any time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..output import RunDirectory
+from ..output.atomic import cannot_write, replacing
+
+__all__ = ["write_report"]
+
+
+def write_report(run_directory: Path) -> list[Path]:
+    """Draw the pictures of a run into its ``report/``; what the run did not record is left out.
+
+    Returns:
+        The PNG files written.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+        OutputError: where a picture cannot be written.
+    """
+    from . import energies, outline, spread_and_height  # matplotlib is loaded only to draw
+    from .run_results import read_results
+    from .style import DPI, figure_style
+
+    results = read_results(Path(run_directory))
+    report = RunDirectory(run_directory).report
+    try:
+        report.mkdir(exist_ok=True)
+    except OSError as error:
+        raise cannot_write(report, error) from error
+    written = []
+    for picture in (outline, spread_and_height, energies):
+        with figure_style():
+            figure = picture.draw(results)
+            if figure is None:
+                continue
+            path = report / f"{picture.__name__.rpartition('.')[2]}.png"
+            with replacing(path) as partial:
+                figure.savefig(partial, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.12)
+        written.append(path)
+    return written

@@ -1,0 +1,67 @@
+"""What a report is drawn from, read back from a run directory."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+
+from ..errors import CaseError
+from ..output import RunDirectory, read_frames
+
+
+@dataclass(frozen=True)
+class RunResults:
+    """The results of one run."""
+
+    case: dict[str, Any]
+    summary: dict[str, Any]
+    history: xarray.Dataset
+    frames: Sequence[tuple[float, Path]]
+    """Times, s, and files of the frames, in order of time."""
+
+    @property
+    def title(self) -> str:
+        return str(self.case.get("name", "case"))
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the rows of the history, s."""
+        return self.history["time"].values
+
+    def series(self, name: str) -> np.ndarray | None:
+        """A scalar of the history; None if it is absent or holds no two rows to draw a line through."""
+        if name not in self.history:
+            return None
+        values = self.history[name].values
+        return values if np.isfinite(values).sum() > 1 else None
+
+    def at(self, time: float, name: str) -> float | None:
+        """A scalar of the history, interpolated at a time, s; None if it is absent."""
+        values = self.series(name)
+        return None if values is None else float(np.interp(time, self.time, values))
+
+
+def read_results(path: Path) -> RunResults:
+    """Read a run directory.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+    """
+    run = RunDirectory(path)
+    try:
+        with xarray.open_dataset(run.history, engine="netcdf4") as history:
+            history.load()
+        return RunResults(
+            case=json.loads(run.case.read_text(encoding="utf-8")),
+            summary=json.loads(run.summary.read_text(encoding="utf-8")),
+            history=history,
+            frames=read_frames(run.frames),
+        )
+    except (OSError, json.JSONDecodeError) as error:
+        raise CaseError(f"'{path}' does not hold the results of a run: {error}") from error

@@ -1,0 +1,45 @@
+"""Picture: spread diameter and height against time, with T500."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from ..output.summary import T500_DIAMETER
+from .run_results import RunResults
+from .style import BLUE, GREEN, GREY, MILLIMETRES, VERMILION, line_chart
+
+CURVES = {
+    "spread_diameter": ("spread diameter", BLUE, "-"),
+    "height": ("height, largest", VERMILION, "-"),
+    "axis_height": ("height, on the axis", GREEN, (0, (4, 2))),
+}
+
+
+def draw(results: RunResults) -> Figure | None:
+    """The lengths that the run recorded, mm."""
+    curves = {name: values for name in CURVES if (values := results.series(name)) is not None}
+    if not curves:
+        return None
+    figure, axes = line_chart(f"{results.title}: spread and height", "length (mm)")
+    for name, values in curves.items():
+        label, colour, dashes = CURVES[name]
+        axes.plot(results.time, values * MILLIMETRES, color=colour, linestyle=dashes, label=label)
+    axes.set_ylim(bottom=0)
+    t500 = results.summary.get("t500")
+    if t500 is not None:
+        level = T500_DIAMETER * MILLIMETRES
+        axes.axhline(level, color=GREY, linewidth=1, linestyle=":", label=f"{level:.0f} mm")
+        axes.axvline(t500, color=GREY, linewidth=1.2, linestyle="--")
+        axes.plot([t500], [level], marker="o", markersize=6, color=BLUE, markeredgecolor="white")
+        # Half-way up stands clear of both curves: by then the spread is above, the height below.
+        right = t500 < 0.7 * results.time[-1]
+        axes.annotate(
+            f"T500 = {t500:.3g} s",
+            (t500, level / 2),
+            xytext=(6 if right else -6, 0),
+            textcoords="offset points",
+            ha="left" if right else "right",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
+        )
+    figure.legend(loc="outside lower center", ncols=4)
+    return figure

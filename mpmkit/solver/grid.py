@@ -1,0 +1,105 @@
+"""The background grid: its lattice, its faces, and the window of nodes that follows the material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..case.model import Case, Friction
+from ..kernels import nodes as node_kernels
+from ..kernels.scatter import NODE
+
+FACE_CODES = {
+    "open": node_kernels.OPEN,
+    "slip": node_kernels.MIRROR,
+    "symmetry": node_kernels.MIRROR,
+    "stick": node_kernels.STICK,
+    "periodic": node_kernels.PERIODIC,
+}
+GHOST = 1
+"""Layers of nodes beyond each face: as many as the widest particle at a face can touch."""
+
+
+@dataclass
+class Grid:
+    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis lies on the lower face, node -1 is a ghost."""
+
+    lower: np.ndarray
+    cells: np.ndarray
+    cell_size: float
+    faces: np.ndarray
+    friction: np.ndarray
+    axes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, case: Case) -> Grid:
+        space, spec = case.space_, case.grid
+        ends = np.array([spec.domain[axis] for axis in space.axes])
+        faces = np.full((space.dim, 2), node_kernels.OPEN)
+        friction = np.zeros((space.dim, 2))
+        for index, name in enumerate(space.faces):
+            face = spec.faces.get(name, "open")
+            if isinstance(face, Friction):
+                faces.flat[index] = node_kernels.FRICTION
+                friction.flat[index] = face.coefficient
+            else:
+                faces.flat[index] = FACE_CODES[face]
+        if space.radial and ends[0, 0] == 0:
+            faces[0, 0] = node_kernels.MIRROR
+        cells = np.rint((ends[:, 1] - ends[:, 0]) / spec.cell_size).astype(np.int64)
+        return cls(ends[:, 0], cells, spec.cell_size, faces, friction, space.axes)
+
+    @property
+    def dim(self) -> int:
+        return len(self.cells)
+
+    @property
+    def extent(self) -> np.ndarray:
+        """Lengths of the domain, m."""
+        return self.cells * self.cell_size
+
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Nodes along each axis, ghosts included."""
+        return tuple(int(n) + 1 + 2 * GHOST for n in self.cells)
+
+    @property
+    def periodic(self) -> np.ndarray:
+        return self.faces[:, 0] == node_kernels.PERIODIC
+
+
+@dataclass
+class Window:
+    """The block of nodes that is stored: the material's bounding box with some room to move in.
+
+    Cost and memory depend on the material, not on the domain. ``shape`` and ``strides`` have three entries,
+    so that the kernels that work on nodes alone need no dimension of their own.
+    """
+
+    grid: Grid
+    lower: np.ndarray = field(init=False)
+    shape: tuple[int, int, int] = field(init=False)
+    strides: tuple[int, int, int] = field(init=False)
+    walls: np.ndarray = field(init=False)
+    nodes: np.ndarray = field(init=False)
+    _store: np.ndarray = field(init=False, default_factory=lambda: np.empty((0, NODE)))
+
+    def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
+        """Lay the window over the nodes that particles in these cells can touch, ghosts included.
+
+        A particle's box reaches at most half a cell beyond its own cell.
+        """
+        grid = self.grid
+        low = np.where(grid.periodic, -GHOST, np.maximum(lowest_cell - 1, -GHOST))
+        high = np.where(grid.periodic, grid.cells + GHOST, np.minimum(highest_cell + 2, grid.cells + GHOST))
+        # An image of a ghost lies one node inside the face; keep it in the window with the ghost.
+        size = [int(n) for n in high - low + 1] + [1] * (3 - grid.dim)
+        self.lower = low.astype(np.int64)
+        self.shape = (size[0], size[1], size[2])
+        self.strides = (size[1] * size[2], size[2], 1)
+        self.walls = np.stack([-low, grid.cells - low], axis=1).astype(np.int64)
+        count = size[0] * size[1] * size[2]
+        if count > len(self._store):
+            self._store = np.zeros((count + count // 4, NODE))
+        self.nodes = self._store[:count]

@@ -1,0 +1,125 @@
+"""What the history records of a scene: spread, heights, energies, mass and momentum."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..case.model import Case
+from ..kernels.tensors import shear_rate
+from .grid import Grid
+from .particles import Particles
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Measures a scene. Lengths include the particle domains; extensive ones are of the whole modelled body.
+
+    A symmetric half counts double in the spread alone: masses, momenta and energies are those of the part
+    that is simulated.
+    """
+
+    case: Case
+    grid: Grid
+    initial_height: float
+    axis_position: np.ndarray
+    """Horizontal position of the body's axis, m, from the grid's corner."""
+
+    @classmethod
+    def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
+        axis = np.zeros(grid.dim - 1)
+        if not case.space_.radial:
+            low = (particles.position - particles.half_size).min(axis=0)[:-1]
+            high = (particles.position + particles.half_size).max(axis=0)[:-1]
+            axis = np.where([_cut(case, grid, a) for a in range(grid.dim - 1)], 0.0, (low + high) / 2)
+        top = float((particles.position + particles.half_size)[:, -1].max())
+        return cls(case, grid, top, axis)
+
+    def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
+        """All scalar measures by the names of the history's variables."""
+        height = self._height(p, slice(None))
+        axis_height = self._height(p, self._near_axis(p))
+        squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
+        strain = compressive = 0.0
+        for group in p.groups:
+            part = group.part
+            volume = p.initial_volume[part]
+            strain += float(np.sum(volume * group.law.strain_energy(p.motion(group), group.state)))
+            if group.law.uses_equation_of_state:
+                energy = group.equation_of_state.energy(p.volume_ratio[part], group.density, group.sound_speed)
+                compressive += float(np.sum(volume * energy))
+        gravity = self.case.gravity_vector
+        return {
+            "spread_diameter": self._spread(p),
+            "height": height,
+            "axis_height": axis_height,
+            "slump": self.initial_height - axis_height,
+            "kinetic_energy": 0.5 * float(np.sum(p.mass * squared)),
+            "potential_energy": -float(np.sum(p.mass * ((p.position + self.grid.lower) @ gravity))),
+            "strain_energy": strain,
+            "compressive_energy": compressive,
+            "total_mass": float(np.sum(p.mass)),
+            "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
+            "max_speed": float(np.sqrt(squared.max())),
+        }
+
+    def _spread(self, p: Particles) -> float:
+        """Mean diameter over the horizontal axes, m."""
+        diameters = []
+        for a in range(self.grid.dim - 1):
+            high = float((p.position[:, a] + p.half_size[:, a]).max())
+            low = float((p.position[:, a] - p.half_size[:, a]).min())
+            if self.case.space_.radial:
+                diameters.append(2 * (high + self.grid.lower[0]))
+            else:
+                diameters.append(2 * high if _cut(self.case, self.grid, a) else high - low)
+        return float(np.mean(diameters))
+
+    def _height(self, p: Particles, of: slice | np.ndarray) -> float:
+        """Top of the material above the grid's lower face, m; 0 where there is none."""
+        tops = (p.position[:, -1] + p.half_size[:, -1])[of]
+        return float(tops.max()) if len(tops) else 0.0
+
+    def _near_axis(self, p: Particles) -> np.ndarray:
+        """Particles within one cell of the axis of the body."""
+        offset = p.position[:, :-1] - self.axis_position
+        if self.case.space_.radial:
+            offset = offset + self.grid.lower[0]
+        return np.einsum("pi,pi->p", offset, offset) <= self.grid.cell_size**2
+
+
+def _cut(case: Case, grid: Grid, axis: int) -> bool:
+    return case.grid.faces.get(f"{grid.axes[axis]}_min") == "symmetry"
+
+
+def cauchy_stress(p: Particles) -> np.ndarray:
+    """Cauchy stress, Pa, ``(n, 6)``, tension positive: the extra stress minus the pressure."""
+    stress = p.stress.copy()
+    stress[:, :3] -= p.pressure[:, None]
+    return stress
+
+
+PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
+    "position": lambda p, grid: p.position + grid.lower,
+    "velocity": lambda p, grid: p.velocity,
+    "stress": lambda p, grid: cauchy_stress(p),
+    "pressure": lambda p, grid: p.pressure,
+    "volume_ratio": lambda p, grid: p.volume_ratio,
+}
+"""Particle fields that a history can keep."""
+
+
+def frame_fields(p: Particles) -> dict[str, np.ndarray]:
+    """What a frame shows of every particle."""
+    return {
+        "velocity": p.velocity,
+        "speed": np.sqrt(np.einsum("pi,pi->p", p.velocity, p.velocity)),
+        "pressure": p.pressure,
+        "half_size": p.half_size,
+        "volume_ratio": p.volume_ratio,
+        "shear_rate": shear_rate(p.velocity_gradient),
+        "body": p.body,
+        "particle": p.number,
+    }

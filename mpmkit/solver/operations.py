@@ -1,0 +1,159 @@
+"""The operations of a step on the particles and nodes of one scene: the contract ``Operations`` made real."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..case.model import Scheme
+from ..kernels import domains, gather, nodes, scatter, tensors
+from .grid import Grid, Window
+from .layout import Layout
+from .particles import Particles
+
+
+class SceneOperations:
+    """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
+
+    def __init__(self, scheme: Scheme, grid: Grid, particles: Particles, gravity: np.ndarray, radial: bool) -> None:
+        n, dim, support = len(particles), grid.dim, scheme.shape.support
+        self.scheme = scheme
+        self.grid = grid
+        self.particles = particles
+        self.gravity = gravity
+        self.radial = radial
+        self.window = Window(grid)
+        self.layout = Layout(grid, particles, self.window)
+        self.base = np.zeros((n, dim), dtype=np.int32)
+        self.weight = np.zeros((n, dim, support))
+        self.gradient = np.zeros((n, dim, support))
+        self.hoop = np.zeros((n, support if radial else 0))
+        self._rate = np.zeros(n)
+        self._in_space = "2d" if dim == 2 else "3d"
+        self._scatter = getattr(scatter, f"scatter_{self._in_space}")
+        self._advance = getattr(gather, f"advance_{self._in_space}")
+        self._gradient = getattr(gather, f"gradient_{self._in_space}")
+
+    # --- The frame of a step -------------------------------------------------------------------------------
+
+    def begin(self) -> int | None:
+        """Sort if needed and evaluate the shape functions. Returns a particle that left the grid, if any did."""
+        lost = self.layout.refresh()
+        if lost is not None:
+            return lost
+        p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
+        shape.fill(p.position, p.half_size, dx, self.base, self.weight, self.gradient)
+        if self.radial:
+            base, weight, gradient = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
+            shape.fill_radial(p.position[:, 0], p.half_size[:, 0], dx, base, weight, gradient, self.hoop)
+        return None
+
+    def step(self, dt: float) -> None:
+        """One step of the chosen order."""
+        self.scheme.order.step(self, dt)
+
+    # --- Particles to nodes --------------------------------------------------------------------------------
+
+    def map_to_grid(self, *, forces: bool = True) -> None:
+        nodes.clear(self.window.nodes)
+        self._map(momentum=True, forces=forces)
+        self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
+        nodes.momentum_to_velocity(self.window.nodes, *self._faces(), self.grid.friction)
+
+    def map_forces(self) -> None:
+        dim = self.grid.dim
+        self._map(momentum=False, forces=True)
+        self._fold(1 + dim, 1 + 2 * dim)
+
+    def remap_velocity(self) -> None:
+        self.map_to_grid(forces=False)
+
+    def _map(self, momentum: bool, forces: bool) -> None:
+        p, w = self.particles, self.window
+        self._scatter(
+            w.nodes, w.strides, w.lower, self.layout.slabs, self.base, self.weight, self.gradient, self.hoop,
+            p.mass, p.velocity, p.volume, p.stress, p.pressure, momentum, forces,
+        )  # fmt: skip
+
+    def _fold(self, first: int, last: int) -> None:
+        nodes.fold(self.window.nodes, *self._faces(), first, last, True)
+
+    def _faces(self) -> tuple:
+        w = self.window
+        return w.shape, w.strides, self.grid.dim, self.grid.faces, w.walls
+
+    # --- Nodes -----------------------------------------------------------------------------------------------
+
+    def solve_momentum(self, dt: float) -> None:
+        nodes.solve_momentum(self.window.nodes, *self._faces(), self.grid.friction, self.gravity, dt)
+
+    # --- Nodes to particles ----------------------------------------------------------------------------------
+
+    def map_to_particles(self, dt: float) -> None:
+        self.scheme.velocity.map_to_particles(self, dt)
+
+    def advance(self, dt: float, *, flip: float) -> None:
+        p, w = self.particles, self.window
+        self._advance(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.hoop, dt, flip, p.position, p.velocity
+        )
+
+    def update_velocity_gradient(self) -> None:
+        w = self.window
+        self._gradient(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.gradient, self.hoop,
+            self.particles.velocity_gradient,
+        )  # fmt: skip
+
+    # --- Particles -------------------------------------------------------------------------------------------
+
+    def update_stress(self, dt: float) -> None:
+        p = self.particles
+        tensors.trace(p.velocity_gradient, self._rate)
+        rate = self.scheme.volumetric.average(self, self._rate)
+        tensors.stretch_volume(rate, dt, p.initial_volume, p.volume_ratio, p.volume)
+        if p.deformation_gradient is not None:
+            tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
+        self._follow_domains()
+        for group in p.groups:
+            part = group.part
+            if group.law.uses_equation_of_state:
+                eos = group.equation_of_state
+                p.pressure[part] = eos.pressure(p.volume_ratio[part], group.density, group.sound_speed)
+            else:  # such a law integrates F; its volume must be that of the same F
+                tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
+                np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
+        treated = self.scheme.volumetric.average(self, p.pressure)
+        if treated is not p.pressure:
+            p.pressure[...] = treated
+        for group in p.groups:
+            part = group.part
+            group.law.update_stress(p.motion(group), group.state, dt, p.stress[part])
+
+    def _follow_domains(self) -> None:
+        p, rule = self.particles, self.scheme.shape.particle_domain
+        largest = self.grid.cell_size / 2
+        if rule == "stretch":
+            domains.follow_stretch(p.deformation_gradient, p.initial_half_size, largest, p.half_size)
+        elif rule == "volume":
+            domains.follow_volume(p.volume_ratio, p.initial_half_size, largest, p.half_size)
+
+    # --- Fields in general -----------------------------------------------------------------------------------
+
+    def particles_to_nodes(self, values: np.ndarray, mass_weighted: bool = False) -> np.ndarray:
+        w, p = self.window, self.particles
+        field = np.zeros((len(w.nodes), 2))
+        measure = p.mass if mass_weighted else p.volume
+        scatter.scatter_scalar(
+            field, w.strides, w.lower, self.layout.slabs, self.base, self.weight, measure, values
+        )
+        nodes.fold(field, *self._faces(), 0, 2, False)
+        total, weighted = field[:, 0], field[:, 1]
+        average = np.divide(weighted, total, out=np.zeros(len(field)), where=total > 0)
+        nodes.fill(average[:, None], *self._faces(), 0, 1, False)
+        return average
+
+    def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
+        w = self.window
+        out = np.empty(len(self.particles))
+        gather.gather_scalar(nodal, w.strides, w.lower, self.base, self.weight, out)
+        return out

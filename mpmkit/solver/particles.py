@@ -1,0 +1,84 @@
+"""The particles: a structure of arrays, allocated once, in groups of one material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+
+
+@dataclass
+class Group:
+    """Particles of one material: a contiguous stretch ``part`` of every array, with the state of its law."""
+
+    law: ConstitutiveLaw
+    equation_of_state: EquationOfState
+    density: float
+    sound_speed: float | None
+    part: slice
+    state: dict[str, np.ndarray]
+
+    @property
+    def wave_speed(self) -> float:
+        return self.law.wave_speed(self.density, self.sound_speed)
+
+
+@dataclass
+class Particles:
+    """State of all particles, n of them on dim axes. Positions are measured from the grid's lower corner."""
+
+    number: np.ndarray
+    """(n,) what a particle is called, from first to last however the arrays are sorted."""
+    body: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    mass: np.ndarray
+    initial_volume: np.ndarray
+    volume: np.ndarray
+    volume_ratio: np.ndarray
+    initial_half_size: np.ndarray
+    half_size: np.ndarray
+    velocity_gradient: np.ndarray
+    stress: np.ndarray
+    """(n, 6) the extra stress; the Cauchy stress is this minus the pressure."""
+    pressure: np.ndarray
+    deformation_gradient: np.ndarray | None
+    groups: list[Group] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+    @property
+    def dim(self) -> int:
+        return self.position.shape[1]
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Every array that has an entry a particle, by name."""
+        return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+
+    def reorder(self, order: np.ndarray) -> None:
+        """Put the particles into a new order, which must leave each group in its own part."""
+        for array in self.arrays().values():
+            array[...] = array[order]
+        for group in self.groups:
+            local = order[group.part] - group.part.start
+            for array in group.state.values():
+                array[...] = array[local]
+
+    def motion(self, group: Group) -> Motion:
+        """What the law of a group is told of its particles."""
+        part, F = group.part, self.deformation_gradient
+        return Motion(
+            velocity_gradient=self.velocity_gradient[part],
+            volume_ratio=self.volume_ratio[part],
+            pressure=self.pressure[part],
+            density=group.density,
+            deformation_gradient=None if F is None else F[part],
+        )
+
+    @property
+    def nbytes(self) -> int:
+        states = sum(array.nbytes for group in self.groups for array in group.state.values())
+        return states + sum(array.nbytes for array in self.arrays().values())

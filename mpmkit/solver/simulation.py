@@ -1,0 +1,100 @@
+"""A scene in motion: its state, its clock, and the guards that stop it when it diverges."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..case.model import Case
+from ..errors import GuardStop
+from ..kernels.compile import CHUNK
+from ..kernels.locate import largest_speed
+from .grid import Grid
+from .measures import Measures
+from .operations import SceneOperations
+from .scene import make_particles
+from .time_step import Limits, choose_step, limits, warnings
+
+CONTROL_INTERVAL = 20
+"""Steps between two looks at the limits of the time step; in as many, no flow changes its speed much."""
+
+
+class Simulation:
+    """Particles, grid and schemes of a case, advanced step by step.
+
+    >>> simulation = Simulation(case)
+    >>> while simulation.time < case.until:
+    ...     simulation.advance()
+    """
+
+    def __init__(self, case: Case) -> None:
+        self.case = case
+        self.grid = Grid.of(case)
+        self.particles = make_particles(case)
+        self.operations = SceneOperations(
+            case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
+        )
+        self.measures = Measures.of(case, self.grid, self.particles)
+        self.time = 0.0
+        self.steps = 0
+        self.limits: Limits
+        self.time_step: float
+        self.limited_by: str
+        self._scratch = np.empty(len(self.particles) // CHUNK + 1)
+        self.choose_time_step()
+
+    def choose_time_step(self) -> None:
+        """Recompute the limits, and with them the step."""
+        speed = largest_speed(self.particles.velocity, self._scratch)
+        self.limits = limits(self.particles.groups, self.grid.cell_size, float(speed))
+        self.time_step, self.limited_by = choose_step(self.case.scheme.time_step, self.limits)
+
+    def warnings(self) -> list[str]:
+        """What the user should know of the step that was chosen."""
+        return warnings(self.case.scheme.time_step, self.limits, self.time_step)
+
+    def advance(self, at_most: float = np.inf) -> float:
+        """One step, no longer than ``at_most`` seconds; returns its length.
+
+        Raises:
+            GuardStop: a particle is outside the grid or not finite.
+        """
+        if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
+            self.choose_time_step()
+        lost = self.operations.begin()
+        if lost is not None:
+            self._stop(lost)
+        dt = min(self.time_step, at_most)
+        self.operations.step(dt)
+        self.time += dt
+        self.steps += 1
+        return dt
+
+    def check(self) -> None:
+        """Raise GuardStop if the last step has sent a particle out of the grid or to infinity."""
+        p = self.particles
+        fine = np.isfinite(p.position).all(axis=1) & np.isfinite(p.velocity).all(axis=1) & np.isfinite(p.pressure)
+        fine &= np.isfinite(p.stress).all(axis=1)
+        if not fine.all():
+            self._stop(int(np.argmin(fine)))
+
+    def _stop(self, index: int) -> None:
+        p = self.particles
+        number = int(p.number[index])
+        position, velocity = p.position[index] + self.grid.lower, p.velocity[index]
+        when = f"stopped at step {self.steps}, t = {self.time:.6g} s: particle {number}"
+        if np.isfinite(position).all() and np.isfinite(velocity).all() and np.isfinite(p.stress[index]).all():
+            where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(self.grid.axes, position, strict=True))
+            raise GuardStop(
+                "particle-outside",
+                f"{when} left the grid at {where} m; enlarge grid.domain, close that face, "
+                "or, if it was thrown out, reduce scheme.time_step.fraction",
+                step=self.steps,
+                particle=number,
+            )
+        raise GuardStop(
+            "non-finite",
+            f"{when} has a position, velocity or stress that is not finite; the run diverged, "
+            "reduce scheme.time_step.fraction",
+            step=self.steps,
+            particle=number,
+        )

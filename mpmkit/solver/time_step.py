@@ -1,0 +1,75 @@
+"""The limits of an explicit step, each by its name, and the step that is taken."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..case.model import TimeStep
+from .particles import Group
+
+VISCOUS_NUMBER = 0.375
+"""Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hat functions, in any dimension."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Critical steps, s, by name; infinite where nothing limits."""
+
+    acoustic: float
+    viscous: float
+    advective: float
+
+    def as_dict(self) -> dict[str, float]:
+        return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
+
+    def binding(self, ignore: list[str]) -> tuple[str, float]:
+        """The smallest limit that is not ignored, and its name."""
+        kept = {name: limit for name, limit in self.as_dict().items() if name not in ignore}
+        if not kept:
+            return "none", math.inf
+        name = min(kept, key=kept.__getitem__)
+        return name, kept[name]
+
+
+def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limits:
+    """Critical steps of a scene.
+
+    acoustic: dx / c, with the law's fastest wave (eq. 5 of Ferreira et al.);
+    viscous: 0.375 rho dx² / mu, with the law's largest viscosity;
+    advective: dx / |v|.
+
+    Args:
+        groups: the materials.
+        cell_size: dx, m.
+        largest_speed: largest particle speed, m/s.
+    """
+    # No strain rate that the grid can resolve exceeds a jump of the largest speed over one cell; a scene
+    # at rest will move, so that at least 1 /s is allowed for.
+    largest_rate = max(2 * largest_speed / cell_size, 1.0)
+    acoustic = viscous = math.inf
+    for group in groups:
+        acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
+        viscosity = group.law.largest_viscosity(largest_rate)
+        viscous = min(viscous, _quotient(VISCOUS_NUMBER * group.density * cell_size**2, viscosity))
+    return Limits(acoustic, viscous, _quotient(cell_size, largest_speed))
+
+
+def choose_step(settings: TimeStep, found: Limits) -> tuple[float, str]:
+    """The step, s, and the name of the limit that it is a fraction of."""
+    name, critical = found.binding(list(settings.ignore))
+    return settings.fraction * critical, name
+
+
+def warnings(settings: TimeStep, found: Limits, step: float) -> list[str]:
+    """One sentence for every limit that the step exceeds because the case ignores it."""
+    return [
+        f"the time step of {step:.3g} s exceeds the {name} limit of {limit:.3g} s {step / limit:.3g}-fold, "
+        f"as scheme.time_step.ignore asks"
+        for name, limit in found.as_dict().items()
+        if name in settings.ignore and step > limit
+    ]
+
+
+def _quotient(a: float, b: float) -> float:
+    return a / b if b > 0 else math.inf

@@ -1,0 +1,30 @@
+"""Herschel and Bulkley's fluid, regularised."""
+
+import numpy as np
+
+from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
+
+from .regularisation import power_viscosity, yield_viscosity
+
+
+class HerschelBulkley(GeneralisedNewtonianLaw):
+    """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + k γ̇^(n-1): eq. 7 of Ferreira et al."""
+
+    name = "herschel-bulkley"
+    citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"
+
+    yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)
+    consistency: float = quantity("Pa s^n", "consistency k", ge=0)
+    flow_index: float = quantity("1", "flow index n", gt=0)
+    regularisation: float = quantity("s", "Papanastasiou's exponent m", gt=0, default=1000.0)
+
+    def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
+        m = self.regularisation
+        return yield_viscosity(shear_rate, self.yield_stress, m) + power_viscosity(
+            shear_rate, self.consistency, self.flow_index, m
+        )
+
+
+@hookimpl
+def mpmkit_laws():
+    return [HerschelBulkley]

@@ -1,0 +1,26 @@
+"""Modified update stress last."""
+
+from mpmkit.contracts import Operations, UpdateOrder, hookimpl
+
+
+class MUSL(UpdateOrder):
+    """As USL, but the stress follows the velocities of the updated particles, mapped to the nodes anew.
+
+    A nearly empty node then gets a particle's velocity, never a quotient of two small numbers.
+    """
+
+    name = "musl"
+    citation = "Sulsky, Zhou & Schreyer, Comput. Phys. Commun. 87 (1995) 236-252"
+
+    def step(self, ops: Operations, dt: float) -> None:
+        ops.map_to_grid()
+        ops.solve_momentum(dt)
+        ops.map_to_particles(dt)
+        ops.remap_velocity()
+        ops.update_velocity_gradient()
+        ops.update_stress(dt)
+
+
+@hookimpl
+def mpmkit_update_orders():
+    return [MUSL]

@@ -1,0 +1,290 @@
+"""Shapes and the particles that fill them."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from mpmkit.errors import CaseError
+from mpmkit.geometry import AnyShape, Box, Cylinder, Frustum, Mesh, Sphere, expected_count, sample
+from mpmkit.spaces import SPACES
+
+SOLID, PLANE, RADIAL = SPACES["3d"], SPACES["plane-strain"], SPACES["axisymmetric"]
+CONE = Frustum(kind="frustum", bottom_radius=0.1, top_radius=0.05, height=0.3)
+ROD = Cylinder(kind="cylinder", radius=0.1, height=0.2)
+BALL = Sphere(kind="sphere", centre=[0, 0, 0.1], radius=0.1)
+BALL_2D = Sphere(kind="sphere", centre=[0, 0.1], radius=0.1)
+BLOCK = Box(kind="box", lower=[0, 0, 0], upper=[0.1, 0.2, 0.3])
+RING = Box(kind="box", lower=[0.1, 0], upper=[0.3, 0.5])
+
+EXACT = [
+    (CONE, SOLID, math.pi * 0.3 / 3 * (0.01 + 0.005 + 0.0025)),
+    (CONE, RADIAL, math.pi * 0.3 / 3 * (0.01 + 0.005 + 0.0025)),
+    (CONE, PLANE, 0.3 * 0.15),
+    (ROD, SOLID, math.pi * 0.01 * 0.2),
+    (ROD, RADIAL, math.pi * 0.01 * 0.2),
+    (ROD, PLANE, 0.2 * 0.2),
+    (BALL, SOLID, 4 / 3 * math.pi * 0.001),
+    (BALL_2D, RADIAL, 4 / 3 * math.pi * 0.001),
+    (BALL_2D, PLANE, math.pi * 0.01),
+    (BLOCK, SOLID, 0.006),
+    (RING, PLANE, 0.1),
+    (RING, RADIAL, math.pi * (0.09 - 0.01) * 0.5),
+]
+each = pytest.mark.parametrize(
+    ("shape", "space", "volume"), EXACT, ids=[f"{shape.kind}-{space.name}" for shape, space, _ in EXACT]
+)
+
+
+def fill(shape, space, cell=0.01, per_axis=2, keep=None, origin=0.0):
+    return sample(
+        shape, space, origin=[origin] * space.dim, cell_size=cell, per_axis=[per_axis] * space.dim, keep=keep
+    )
+
+
+@each
+def test_volume_is_exact(shape, space, volume):
+    assert shape.volume(space) == pytest.approx(volume, rel=1e-14)
+
+
+@each
+def test_containment_agrees_with_volume_and_bounds(shape, space, volume):
+    lower, upper = shape.bounds(space)
+    points = np.random.default_rng(1).uniform(lower, upper, (200_000, space.dim))
+    weight = space.particle_volume(points, (upper - lower))
+    inside = shape.contains(points, space)
+    assert weight[inside].sum() / len(points) == pytest.approx(volume, rel=0.01)
+    outside = np.concatenate(
+        [lower + (upper - lower) * (np.eye(space.dim) * 1.02), [lower - 1e-6], [upper + 1e-6]]
+    )
+    assert not shape.contains(outside, space).any()
+
+
+@each
+def test_particles_have_the_exact_total_and_expected_count(shape, space, volume):
+    particles = fill(shape, space, cell=0.01)
+    assert particles.volume.sum() == pytest.approx(volume, rel=1e-12)
+    assert len(particles.volume) == pytest.approx(
+        expected_count(shape, space, 0.01, [2] * space.dim), rel=0.02
+    )
+    assert (particles.half_size == 0.0025).all()
+    assert particles.half_size.shape == particles.position.shape
+    assert shape.contains(particles.position, space).all()
+    if space.radial:
+        assert (particles.position[:, 0] > 0).all()
+
+
+def test_particles_stand_on_the_lattice():
+    particles = sample(
+        Box(kind="box", lower=[0, 0], upper=[0.2, 0.1]),
+        PLANE,
+        origin=[-0.3, 0.0],
+        cell_size=0.1,
+        per_axis=[2, 1],
+    )
+    expected = [[0.025, 0.05], [0.075, 0.05], [0.125, 0.05], [0.175, 0.05]]
+    np.testing.assert_allclose(particles.position, expected, rtol=1e-13)
+    np.testing.assert_allclose(particles.volume, 0.005, rtol=1e-13)
+    np.testing.assert_allclose(particles.half_size, [[0.025, 0.05]] * 4, rtol=1e-13)
+
+
+@pytest.mark.parametrize("origin", [0.0, -0.3, -7.77, 0.1 + 0.2 - 0.3])
+@pytest.mark.parametrize("per_axis", [1, 2, 3])
+def test_a_box_of_whole_cells_is_filled_wholly(origin, per_axis):
+    box = Box(kind="box", lower=[0, 0], upper=[0.1, 0.07])
+    assert len(fill(box, PLANE, 0.01, per_axis, origin=origin).volume) == 70 * per_axis**2
+
+
+@pytest.mark.parametrize("origin", [0.0, -0.3, -7.77])
+def test_points_on_the_surface_are_inside_whatever_the_rounding(origin):
+    box = Box(kind="box", lower=[0.005, 0.005], upper=[0.105, 0.075])
+    assert len(fill(box, PLANE, 0.01, 1, origin=origin).volume) == 11 * 8
+
+
+def test_the_seeds_cone_has_the_published_number_of_particles():
+    for corner in (-0.2, -0.2025):  # the axis on a node, in the middle of a cell
+        particles = sample(CONE, SOLID, origin=[corner, corner, 0], cell_size=0.005, per_axis=[2, 2, 2])
+        assert len(particles.volume) == 351_860
+    assert expected_count(CONE, SOLID, 0.005, [2, 2, 2]) == pytest.approx(351_860, rel=1e-4)
+    assert len(fill(CONE, RADIAL, 0.005).volume) == 3_600
+
+
+@pytest.mark.parametrize("shape", [CONE, ROD, BALL], ids=lambda shape: shape.kind)
+@pytest.mark.parametrize("per_axis", [1, 2, 3])
+def test_a_quarter_has_a_quarter_of_the_mass(shape, per_axis):
+    whole = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
+    keep = ([0, 0, 0], [1, 1, 1])
+    quarter = fill(shape, SOLID, 0.02, per_axis, keep=keep)
+    assert 4 * len(quarter.volume) == len(whole.volume)
+    assert quarter.volume.sum() == pytest.approx(shape.volume(SOLID) / 4, rel=1e-12)
+    assert (quarter.position > 0).all()
+    count = expected_count(shape, SOLID, 0.02, [per_axis] * 3)
+    assert expected_count(shape, SOLID, 0.02, [per_axis] * 3, keep) == pytest.approx(count / 4)
+
+
+def test_boxes_side_by_side_share_no_particle():
+    whole = fill(BALL, SOLID)
+    halves = [
+        fill(BALL, SOLID, keep=([low, -1, -1], [high, 1, 1])) for low, high in ((-1, 0.0025), (0.0025, 1))
+    ]
+    assert sum(len(half.volume) for half in halves) == len(whole.volume)
+    assert sum(half.volume.sum() for half in halves) == pytest.approx(BALL.volume(SOLID), rel=1e-12)
+
+
+def test_a_body_between_lattice_points_gets_no_particles():
+    crumb = Sphere(kind="sphere", centre=[0.5, 0.5, 0.5], radius=0.01)
+    particles = fill(crumb, SOLID, 1.0)
+    assert particles.position.shape == particles.half_size.shape == (0, 3)
+    assert particles.volume.shape == (0,)
+    assert expected_count(crumb, SOLID, 1.0, [2, 2, 2], ([2, 2, 2], [3, 3, 3])) == 0
+
+
+@pytest.mark.parametrize(
+    ("shape", "space", "words"),
+    [
+        (BLOCK, PLANE, ["lower", "[0.0, 0.0, 0.0]", "2 numbers (x, z)"]),
+        (RING, SOLID, ["lower", "[0.1, 0.0]", "3 numbers (x, y, z)"]),
+        (BALL, RADIAL, ["centre", "2 numbers (r, z)"]),
+        (Sphere(kind="sphere", centre=[0.1, 0], radius=1), RADIAL, ["centre", "[0.1, 0.0]", "[0, z]"]),
+        (ROD.model_copy(update={"base": [0.2, 0.0]}), RADIAL, ["cylinder's base", "[0.2, 0.0]", "[0, z]"]),
+        (CONE.model_copy(update={"base": [0.0, 0.0]}), SOLID, ["frustum's base", "3 numbers"]),
+        (Box(kind="box", lower=[-1, 0], upper=[1, 1]), RADIAL, ["lower", "[-1.0, 0.0]", "at least 0"]),
+        (Mesh(kind="mesh", file="a.stl"), PLANE, ["a.stl", "only in 3d"]),
+        (Mesh(kind="mesh", file="nowhere.stl"), SOLID, ["nowhere.stl", "no such file"]),
+    ],
+)
+def test_a_shape_that_the_space_cannot_hold_is_refused(shape, space, words):
+    with pytest.raises(ValueError, match=shape.kind) as checked:
+        shape.check(space)
+    with pytest.raises(CaseError) as used:
+        fill(shape, space)
+    assert str(checked.value) == str(used.value)
+    for word in words:
+        assert word in str(used.value)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"kind": "frustum", "bottom_radius": 0, "top_radius": 0, "height": 1},
+        {"kind": "cylinder", "radius": 0, "height": 1},
+        {"kind": "cylinder", "radius": 1, "height": math.inf},
+        {"kind": "box", "lower": [0, 0], "upper": [1, 0]},
+        {"kind": "box", "lower": [0, 0], "upper": [1, 1, 1]},
+        {"kind": "sphere", "centre": [0], "radius": 1},
+        {"kind": "sphere", "centre": [0, 0], "radius": 1, "colour": "red"},
+        {"kind": "mesh", "file": "a.stl", "scale": 0},
+        {"kind": "torus"},
+    ],
+)
+def test_nonsense_is_refused(bad):
+    with pytest.raises(ValidationError):
+        TypeAdapter(AnyShape).validate_python(bad)
+
+
+@pytest.mark.parametrize("shape", [CONE, ROD, BALL, BLOCK, Mesh(kind="mesh", file="a.stl")])
+def test_shapes_survive_json(shape):
+    adapter = TypeAdapter(AnyShape)
+    assert adapter.validate_json(adapter.dump_json(shape)) == shape
+
+
+def write(path, vertices, faces):
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
+    return str(path)
+
+
+def icosphere(radius, subdivisions=4):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.creation.icosphere(subdivisions, radius=radius)
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+
+
+@pytest.mark.parametrize("name", ["ball.stl", "ball.obj", "ball.ply"])
+def test_a_mesh_is_filled_as_the_sphere_that_it_resembles(tmp_path, name):
+    vertices, faces = icosphere(100.0)
+    mesh = Mesh(kind="mesh", file=write(tmp_path / name, vertices, faces), scale=0.001, translate=[0, 0, 0.1])
+    mesh.check(SOLID)
+    assert mesh.volume(SOLID) == pytest.approx(BALL.volume(SOLID), rel=5e-3)
+    np.testing.assert_allclose(mesh.bounds(SOLID), BALL.bounds(SOLID), atol=1e-6)
+    particles, reference = fill(mesh, SOLID), fill(BALL, SOLID)
+    assert len(particles.volume) == pytest.approx(len(reference.volume), rel=0.01)
+    assert particles.volume.sum() == pytest.approx(mesh.volume(SOLID), rel=1e-12)
+    # On planes of symmetry rays meet corners and edges of the icosphere; none may leak.
+    points = np.random.default_rng(2).integers(-12, 13, (2000, 3)) * 0.01 + [0, 0, 0.1]
+    distance = np.linalg.norm(points - [0, 0, 0.1], axis=1)
+    clear = abs(distance - 0.1) > 0.0005
+    np.testing.assert_array_equal(mesh.contains(points, SOLID)[clear], (distance < 0.1)[clear])
+
+
+BLOCK_CORNERS = np.array([[x, y, z] for x in (0, 0.1) for y in (0, 0.2) for z in (0, 0.3)])
+BLOCK_QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+
+
+@pytest.mark.parametrize("turned", [[], [0], [1, 4], range(6)])
+def test_quadrilaterals_are_split_and_normals_turned(tmp_path, turned):
+    pytest.importorskip("trimesh")
+    lines = [f"v {x} {y} {z}" for x, y, z in BLOCK_CORNERS]
+    for number, face in enumerate(BLOCK_QUADS + 1):
+        lines.append("f " + " ".join(map(str, face[::-1] if number in turned else face)))
+    (tmp_path / "block.obj").write_text("\n".join(lines) + "\n")
+    mesh = Mesh(kind="mesh", file=str(tmp_path / "block.obj"))
+    assert mesh.volume(SOLID) == pytest.approx(0.006, rel=1e-12)
+    for shift in (0.0, 0.0025):  # the second puts lattice points on the faces: inside, as for the box
+        np.testing.assert_array_equal(
+            fill(mesh, SOLID, origin=shift).position, fill(BLOCK, SOLID, origin=shift).position
+        )
+
+
+@pytest.mark.parametrize("inward", [False, True])
+def test_a_shell_within_another_is_a_cavity(tmp_path, inward):
+    outer, faces = icosphere(0.1, 3)
+    vertices = np.concatenate([outer, outer / 2, outer / 4 + [1, 0, 0]])
+    hole = faces[:, ::-1] if inward else faces
+    shells = np.concatenate([faces, hole + len(outer), faces[:, ::-1] + 2 * len(outer)])
+    mesh = Mesh(kind="mesh", file=write(tmp_path / "hollow.stl", vertices, shells))
+    ball = 4 / 3 * math.pi * 0.001
+    assert mesh.volume(SOLID) == pytest.approx(ball * (1 - 1 / 8 + 1 / 64), rel=0.02)
+    points = np.array([[0, 0, 0], [0.07, 0, 0], [0.5, 0, 0], [1, 0, 0]])
+    assert mesh.contains(points, SOLID).tolist() == [False, True, False, True]
+
+
+def test_bad_meshes_are_refused_by_name(tmp_path):
+    vertices, faces = icosphere(0.1, 1)
+    flat = BLOCK_CORNERS * [1, 1, 0]
+    quads = np.concatenate([BLOCK_QUADS[:, [0, 1, 2]], BLOCK_QUADS[:, [0, 2, 3]]])
+    (tmp_path / "words.stl").write_text("these are only words")
+    (tmp_path / "words.xyz").write_text("these are only words")
+    (tmp_path / "empty.obj").write_text("v 0 0 0\n")
+    for file, words in {
+        write(tmp_path / "open.stl", vertices, faces[1:]): "not closed",
+        write(tmp_path / "flat.ply", flat, quads): "closed",
+        str(tmp_path / "words.stl"): "file",
+        str(tmp_path / "words.xyz"): "cannot read",
+        str(tmp_path / "empty.obj"): "file",
+        str(tmp_path): "cannot read",
+    }.items():
+        with pytest.raises(CaseError, match=words) as refused:
+            Mesh(kind="mesh", file=file).volume(SOLID)
+        assert file in str(refused.value)
+
+
+def test_a_rewritten_mesh_is_read_again(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh = Mesh(kind="mesh", file="ball.stl")
+    for number, radius in enumerate((1.0, 2.0)):
+        write(tmp_path / "ball.stl", *icosphere(radius))
+        os.utime("ball.stl", ns=(number, number))
+        assert mesh.bounds(SOLID)[1] == pytest.approx([radius] * 3, rel=1e-6)
+
+
+def test_without_trimesh_a_mesh_says_what_to_install(tmp_path, monkeypatch):
+    file = write(tmp_path / "ball.stl", *icosphere(1.0, 1))
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(CaseError, match=r"pip install 'mpmkit\[mesh\]'"):
+        Mesh(kind="mesh", file=file).volume(SOLID)
