@@ -20,7 +20,8 @@ def check(case: Case) -> None:
     _check_faces(case)
     for number, body in enumerate(case.bodies):
         where = f"bodies.{number}"
-        _check_vector(f"{where}.velocity", body.velocity, case)
+        for field, vector in _velocity_vectors(body):
+            _check_vector(f"{where}.velocity{field}", vector, case)
         _check_particles_per_cell(f"{where}.particles_per_cell", body.particles_per_cell, case)
         _check_sound_speed(f"{where}.material.sound_speed", body.material)
         try:
@@ -42,6 +43,15 @@ def _check_vector(field: str, value: list[float] | None, case: Case) -> None:
         )
 
 
+def _velocity_vectors(body) -> list[tuple[str, list[float]]]:
+    velocity = body.velocity
+    if velocity is None:
+        return []
+    if isinstance(velocity, list):
+        return [("", velocity)]
+    return [(".amplitude", velocity.amplitude), (".wave_vector", velocity.wave_vector)]
+
+
 def _check_domain(case: Case) -> None:
     axes, domain, cell = case.space_.axes, case.grid.domain, case.grid.cell_size
     for axis in domain:
@@ -61,8 +71,8 @@ def _check_domain(case: Case) -> None:
             )
         if cells > 2**30:
             raise ValueError(f"grid.domain.{axis} has {cells:.3g} cells; at most {2**30} are possible")
-    if case.space_.radial and domain["r"][0] < 0:
-        raise ValueError(f"grid.domain.r begins at {domain['r'][0]:g}; a radius is at least 0")
+    if case.space_.radial and domain["r"][0] != 0:
+        raise ValueError(f"grid.domain.r begins at {domain['r'][0]:g}; it must begin at the axis of symmetry, r = 0")
 
 
 def _check_faces(case: Case) -> None:
@@ -78,9 +88,9 @@ def _check_faces(case: Case) -> None:
     if case.space_.radial:
         if "periodic" in (faces.get("r_min"), faces.get("r_max")):
             raise ValueError("grid.faces: the radial axis cannot be 'periodic'")
-        if case.grid.domain["r"][0] == 0 and faces.get("r_min", "symmetry") != "symmetry":
+        if faces.get("r_min", "symmetry") != "symmetry":
             raise ValueError(
-                f"grid.faces.r_min is '{faces['r_min']}'; at r = 0 it is the axis of symmetry, leave it out or say 'symmetry'"
+                f"grid.faces.r_min is '{faces['r_min']}'; it is the axis of symmetry, leave it out or say 'symmetry'"
             )
 
 

@@ -95,6 +95,26 @@ class Material(Model):
         raise NotImplementedError("only the models made by case_model know their law")
 
 
+class SineVelocity(Model):
+    """A standing wave as initial velocity: v(x) = amplitude sin(wave_vector · x)."""
+
+    amplitude: list[float] = quantity("m/s", "amplitude along each axis")
+    wave_vector: list[float] = quantity("rad/m", "2 pi over the wave length, along each axis")
+
+    def at(self, position: np.ndarray) -> np.ndarray:
+        """Velocity, m/s, ``(n, dim)``, at positions ``(n, dim)``, m."""
+        return np.sin(position @ np.array(self.wave_vector))[:, None] * np.array(self.amplitude)
+
+
+def _velocity_tag(value: Any) -> str:
+    return "sine" if isinstance(value, dict | SineVelocity) else "uniform"
+
+
+InitialVelocity = Annotated[
+    Annotated[list[float], Tag("uniform")] | Annotated[SineVelocity, Tag("sine")], Discriminator(_velocity_tag)
+]
+
+
 class Body(Model):
     """A shape filled with a material."""
 
@@ -105,7 +125,9 @@ class Body(Model):
         description="particles in a full cell (a square or cubic number), or their number along each axis; "
         "2 along each axis unless told",
     )
-    velocity: list[float] | None = quantity("m/s", "initial velocity along each axis; at rest unless told", default=None)
+    velocity: InitialVelocity | None = quantity(
+        "m/s", "initial velocity along each axis, or a standing wave; at rest unless told", default=None
+    )
 
 
 class TimeStep(Model):

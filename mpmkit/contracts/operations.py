@@ -15,13 +15,13 @@ class Operations(Protocol):
     """
 
     def map_to_grid(self, *, forces: bool = True) -> None:
-        """Particles to nodes: mass, momentum and, if asked, the internal force of the present stress."""
+        """Particles to nodes: mass, momentum and, if asked, gravity and the internal force."""
 
     def map_forces(self) -> None:
-        """Particles to nodes: the internal force of the present stress alone."""
+        """Particles to nodes: gravity and the internal force of the present stress alone."""
 
     def solve_momentum(self, dt: float) -> None:
-        """Advance the nodal velocity, v ← v + dt f / m, with gravity and the conditions on the faces."""
+        """Advance the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""
 
     def map_to_particles(self, dt: float) -> None:
         """Nodes to particles: velocity, as the velocity update has it, and position."""

@@ -15,8 +15,8 @@ HERE, STRAYED, LOST = range(3)
 def locate(position, extent, inverse_cell, slabs, slab_width, first_slab, window_low, window_high, verdicts):
     """Check all particles. Returns the worst verdict and, where it is ``LOST``, the particle.
 
-    A particle may drift one cell beyond its slab along the first axis, and anywhere between ``window_low``
-    and ``window_high`` (cells) along the others. ``verdicts`` is scratch, two integers a chunk.
+    A particle may drift anywhere between the cells ``window_low`` and ``window_high``, but along the first
+    axis no more than one cell beyond its slab. ``verdicts`` is scratch, two integers a chunk.
     """
     n, dim = position.shape
     chunks = chunk_count(n)
@@ -37,11 +37,10 @@ def locate(position, extent, inverse_cell, slabs, slab_width, first_slab, window
                         worst, who = LOST, p
                     continue
                 cell = int(x * inverse_cell)
+                low, high = window_low[d], window_high[d]
                 if d == 0:
-                    low = (first_slab + slab) * slab_width - 1
-                    high = low + slab_width + 1
-                else:
-                    low, high = window_low[d], window_high[d]
+                    low = max(low, (first_slab + slab) * slab_width - 1)
+                    high = min(high, (first_slab + slab + 1) * slab_width)
                 if (cell < low or cell > high) and worst == HERE:
                     worst = STRAYED
         verdicts[c, 0], verdicts[c, 1] = worst, who

@@ -3,7 +3,10 @@
 A mirror face (a slip wall or a symmetry plane) is exact: what particles put on the ghost nodes behind it is
 folded onto the image in front of it with the normal component reversed, as the mirrored scene would put it
 there, and after the momentum equation the ghosts get the image's velocity back. A periodic face folds and
-fills in the same way.
+fills in the same way; a stick wall continues the velocity as an odd function, all components reversed.
+
+Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
+particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
 
 ``nodes`` is (count, NODE); ``shape`` and ``strides`` have three entries, the third 1 in two dimensions.
 ``walls[a, side]`` is the index of the wall's plane of nodes, ``faces[a, side]`` one of the codes below.
@@ -13,9 +16,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit, prange
 
 from .compile import kernel
+from .scatter import NODE
 
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
 
@@ -29,8 +34,8 @@ def clear(nodes):
 
 
 @njit(cache=True)
-def _add_plane(nodes, shape, strides, axis, source, target, first, last, reverse0, reverse1):
-    """Move slots first..last-1 of plane ``source`` onto plane ``target``; two of them change their sign."""
+def _add_plane(nodes, shape, strides, axis, source, target, first, last, sign):
+    """Move slots first..last-1 of plane ``source`` onto plane ``target``, each times its ``sign``."""
     if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
         return
     b, c = (axis + 1) % 3, (axis + 2) % 3
@@ -39,14 +44,13 @@ def _add_plane(nodes, shape, strides, axis, source, target, first, last, reverse
             offset = i * strides[b] + j * strides[c]
             src, dst = source * strides[axis] + offset, target * strides[axis] + offset
             for q in range(first, last):
-                value = nodes[src, q]
-                nodes[dst, q] += -value if q == reverse0 or q == reverse1 else value
+                nodes[dst, q] += sign[q] * nodes[src, q]
                 nodes[src, q] = 0.0
 
 
 @njit(cache=True)
-def _copy_plane(nodes, shape, strides, axis, source, target, first, last, reverse0, reverse1):
-    """Copy slots first..last-1 of plane ``source`` to plane ``target``; two of them change their sign."""
+def _copy_plane(nodes, shape, strides, axis, source, target, first, last, sign):
+    """Copy slots first..last-1 of plane ``source`` to plane ``target``, each times its ``sign``."""
     if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
         return
     b, c = (axis + 1) % 3, (axis + 2) % 3
@@ -55,8 +59,18 @@ def _copy_plane(nodes, shape, strides, axis, source, target, first, last, revers
             offset = i * strides[b] + j * strides[c]
             src, dst = source * strides[axis] + offset, target * strides[axis] + offset
             for q in range(first, last):
-                value = nodes[src, q]
-                nodes[dst, q] = -value if q == reverse0 or q == reverse1 else value
+                nodes[dst, q] = sign[q] * nodes[src, q]
+
+
+@njit(cache=True)
+def _parity(face, axis, dim, vectors):
+    """Sign of every slot under reflection at a face: scalars are even, of a vector what the face reverses is odd."""
+    sign = np.ones(NODE)
+    if vectors and face != PERIODIC:
+        for d in range(dim):
+            if d == axis or face == STICK:
+                sign[1 + d] = sign[1 + dim + d] = -1.0
+    return sign
 
 
 @njit(cache=True)
@@ -66,18 +80,17 @@ def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
     """
     for a in range(dim):
-        r0, r1 = (1 + a, 1 + dim + a) if vectors else (-1, -1)
-        if faces[a, 0] == PERIODIC:
-            k0 = walls[a, 0]
-            cells = walls[a, 1] - k0
-            for g in (-1, cells, cells + 1):
-                _add_plane(nodes, shape, strides, a, k0 + g, k0 + g % cells, first, last, -1, -1)
-            continue
         for side in range(2):
-            if faces[a, side] == MIRROR or faces[a, side] == FRICTION:
-                inward = 1 - 2 * side
-                k = walls[a, side]
-                _add_plane(nodes, shape, strides, a, k - inward, k + inward, first, last, r0, r1)
+            face, wall, inward = faces[a, side], walls[a, side], 1 - 2 * side
+            sign = _parity(face, a, dim, vectors)
+            if face == PERIODIC:
+                cells = walls[a, 1] - walls[a, 0]
+                for depth in range(1 + side):  # the upper face is the lower one, seen a period later
+                    ghost = wall - inward * (1 - depth)
+                    image = walls[a, 0] + (ghost - walls[a, 0]) % cells
+                    _add_plane(nodes, shape, strides, a, ghost, image, first, last, sign)
+            elif face != OPEN:
+                _add_plane(nodes, shape, strides, a, wall - inward, wall + inward, first, last, sign)
 
 
 @njit(cache=True)
@@ -85,18 +98,17 @@ def fill(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
     for back in range(dim):
         a = dim - 1 - back
-        r0, r1 = (1 + a, 1 + dim + a) if vectors else (-1, -1)
-        if faces[a, 0] == PERIODIC:
-            k0 = walls[a, 0]
-            cells = walls[a, 1] - k0
-            for g in (-1, cells, cells + 1):
-                _copy_plane(nodes, shape, strides, a, k0 + g % cells, k0 + g, first, last, -1, -1)
-            continue
         for side in range(2):
-            if faces[a, side] == MIRROR or faces[a, side] == FRICTION:
-                inward = 1 - 2 * side
-                k = walls[a, side]
-                _copy_plane(nodes, shape, strides, a, k + inward, k - inward, first, last, r0, r1)
+            face, wall, inward = faces[a, side], walls[a, side], 1 - 2 * side
+            sign = _parity(face, a, dim, vectors)
+            if face == PERIODIC:
+                cells = walls[a, 1] - walls[a, 0]
+                for depth in range(1 + side):
+                    ghost = wall - inward * (1 - depth)
+                    image = walls[a, 0] + (ghost - walls[a, 0]) % cells
+                    _copy_plane(nodes, shape, strides, a, image, ghost, first, last, sign)
+            elif face != OPEN:
+                _copy_plane(nodes, shape, strides, a, wall + inward, wall - inward, first, last, sign)
 
 
 @njit(cache=True)
@@ -107,27 +119,24 @@ def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
             code = faces[a, side]
             if code == OPEN or code == PERIODIC:
                 continue
-            inward = 1 - 2 * side
-            planes = 2 if code == STICK else 1  # a stick wall holds its ghost nodes as well
-            for depth in range(planes):
-                k = walls[a, side] - depth * inward
-                if not 0 <= k < shape[a]:
-                    continue
-                b, c = (a + 1) % 3, (a + 2) % 3
-                for i in range(shape[b]):
-                    for j in range(shape[c]):
-                        node = nodes[k * strides[a] + i * strides[b] + j * strides[c]]
-                        if code == MIRROR:
-                            node[1 + a] = 0.0
+            inward, k = 1 - 2 * side, walls[a, side]
+            if not 0 <= k < shape[a]:
+                continue
+            b, c = (a + 1) % 3, (a + 2) % 3
+            for i in range(shape[b]):
+                for j in range(shape[c]):
+                    node = nodes[k * strides[a] + i * strides[b] + j * strides[c]]
+                    if code == MIRROR:
+                        node[1 + a] = 0.0
+                        if solved:
+                            node[1 + dim + a] = 0.0
+                    elif code == STICK:
+                        for d in range(dim):
+                            node[1 + d] = 0.0
                             if solved:
-                                node[1 + dim + a] = 0.0
-                        elif code == STICK:
-                            for d in range(dim):
-                                node[1 + d] = 0.0
-                                if solved:
-                                    node[1 + dim + d] = 0.0
-                        else:
-                            _rub(node, dim, a, inward, friction[a, side], solved)
+                                node[1 + dim + d] = 0.0
+                    else:
+                        _rub(node, dim, a, inward, friction[a, side], solved)
 
 
 @njit(cache=True)
@@ -164,13 +173,13 @@ def momentum_to_velocity(nodes, shape, strides, dim, faces, walls, friction):
 
 
 @kernel()
-def solve_momentum(nodes, shape, strides, dim, faces, walls, friction, gravity, dt):
-    """Δv = dt (f/m + g), v ← v + Δv, with the conditions on the faces and the ghosts filled."""
+def solve_momentum(nodes, shape, strides, dim, faces, walls, friction, dt):
+    """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled."""
     for i in prange(len(nodes)):
         m = nodes[i, 0]
         if m > 0.0:
             for d in range(dim):
-                change = dt * (nodes[i, 1 + dim + d] / m + gravity[d])
+                change = dt * nodes[i, 1 + dim + d] / m
                 nodes[i, 1 + d] += change
                 nodes[i, 1 + dim + d] = change
     _constrain(nodes, shape, strides, dim, faces, walls, friction, True)

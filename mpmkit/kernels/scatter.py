@@ -18,11 +18,11 @@ NODE = 8
 @kernel()
 def scatter_2d(
     nodes, strides, lower, slabs, base, weight, gradient, hoop, mass, velocity, volume, stress, pressure,
-    momentum, forces,
+    gravity, momentum, forces,
 ):  # fmt: skip
-    """Add mass and momentum (if ``momentum``) and internal force (if ``forces``) of all particles to the nodes.
+    """Add mass and momentum (if ``momentum``) and the force (if ``forces``) of all particles to the nodes.
 
-    f = -Σ V (σ·∇N), with the hoop stress on the radial component where ``hoop`` has columns. ``stress``
+    f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where ``hoop`` has columns. ``stress``
     holds the extra stress; the Cauchy stress is that minus ``pressure``. ``slabs[g, s]`` is the first
     particle of slab s in group g.
     """
@@ -46,22 +46,22 @@ def scatter_2d(
                         row = first + a * strides[0]
                         for b in range(support):
                             w1 = weight[p, 1, b]
+                            wm = m * w0 * w1
                             i = row + b
                             if momentum:
-                                wm = m * w0 * w1
                                 nodes[i, 0] += wm
                                 nodes[i, 1] += wm * v0
                                 nodes[i, 2] += wm * v1
                             if forces:
                                 d0, d1 = g0 * w1, w0 * gradient[p, 1, b]
-                                nodes[i, 3] -= s00 * d0 + s01 * d1 + s22 * h0 * w1
-                                nodes[i, 4] -= s01 * d0 + s11 * d1
+                                nodes[i, 3] += wm * gravity[0] - s00 * d0 - s01 * d1 - s22 * h0 * w1
+                                nodes[i, 4] += wm * gravity[1] - s01 * d0 - s11 * d1
 
 
 @kernel()
 def scatter_3d(
     nodes, strides, lower, slabs, base, weight, gradient, hoop, mass, velocity, volume, stress, pressure,
-    momentum, forces,
+    gravity, momentum, forces,
 ):  # fmt: skip
     """As ``scatter_2d``, in three dimensions; ``hoop`` is not used."""
     support = weight.shape[2]
@@ -91,18 +91,18 @@ def scatter_3d(
                             row = first + a * strides[0] + b * strides[1]
                             for c in range(support):
                                 w2 = weight[p, 2, c]
+                                wm = m * w01 * w2
                                 i = row + c
                                 if momentum:
-                                    wm = m * w01 * w2
                                     nodes[i, 0] += wm
                                     nodes[i, 1] += wm * v0
                                     nodes[i, 2] += wm * v1
                                     nodes[i, 3] += wm * v2
                                 if forces:
                                     d0, d1, d2 = g0w1 * w2, w0g1 * w2, w01 * gradient[p, 2, c]
-                                    nodes[i, 4] -= s00 * d0 + s01 * d1 + s02 * d2
-                                    nodes[i, 5] -= s01 * d0 + s11 * d1 + s12 * d2
-                                    nodes[i, 6] -= s02 * d0 + s12 * d1 + s22 * d2
+                                    nodes[i, 4] += wm * gravity[0] - s00 * d0 - s01 * d1 - s02 * d2
+                                    nodes[i, 5] += wm * gravity[1] - s01 * d0 - s11 * d1 - s12 * d2
+                                    nodes[i, 6] += wm * gravity[2] - s02 * d0 - s12 * d1 - s22 * d2
 
 
 @kernel()

@@ -38,7 +38,7 @@ class History:
         self._columns = {column.name: column for column in columns}
         self._axes = tuple(axes)
         self._times: list[float] = []
-        self._rows: dict[str, list[float | np.ndarray]] = {name: [] for name in self._columns}
+        self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
         self._particles: dict[str, list[np.ndarray]] | None = None
         self._next_flush = -np.inf  # the first row is written at once: a full disk is told of at the start
 
@@ -78,12 +78,16 @@ class History:
         """The rows so far: dims ``(time)``, ``(time, component)``, ``(time, particle, …)``."""
         import xarray
 
-        variables = {}
+        variables: dict[str, tuple] = {}
         for name, column in self._columns.items():
             trailing = ("component",) if column.component else ()
             shape = (len(self), len(self._axes)) if column.component else (len(self),)
             attributes = {"units": column.units, "long_name": column.long_name}
-            variables[name] = (("time", *trailing), np.reshape(self._rows[name], shape), attributes)
+            variables[name] = (
+                ("time", *trailing),
+                np.array(self._rows[name], dtype=float).reshape(shape),
+                attributes,
+            )
         for name, rows in (self._particles or {}).items():
             of_particle = PARTICLE_VARIABLES[name]
             attributes = {"units": of_particle.units, "long_name": of_particle.long_name}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     import xarray
@@ -15,19 +15,19 @@ T500_DIAMETER = 0.5
 """Spread diameter, m, at which T500 is taken."""
 
 
-def first_crossing(time: Sequence[float], values: Sequence[float], level: float) -> float | None:
+def first_crossing(time: ArrayLike, values: ArrayLike, level: float) -> float | None:
     """Time at which ``values`` first rise to ``level``, linear between rows; None if they never do.
 
     Values that start at the level or above have not risen to it: a body that is wide from the start has
     no T500, rather than one of zero.
     """
-    time, values = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
-    rises = np.flatnonzero((values[:-1] < level) & (values[1:] >= level))
+    times, levels = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    rises = np.flatnonzero((levels[:-1] < level) & (levels[1:] >= level))
     if not len(rises):
         return None
     before, after = rises[0], rises[0] + 1
-    part = (level - values[before]) / (values[after] - values[before])
-    return float(time[before] + part * (time[after] - time[before]))
+    part = (level - levels[before]) / (levels[after] - levels[before])
+    return float(times[before] + part * (times[after] - times[before]))
 
 
 def summarise(

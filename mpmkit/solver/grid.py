@@ -45,7 +45,7 @@ class Grid:
                 friction.flat[index] = face.coefficient
             else:
                 faces.flat[index] = FACE_CODES[face]
-        if space.radial and ends[0, 0] == 0:
+        if space.radial:
             faces[0, 0] = node_kernels.MIRROR
         cells = np.rint((ends[:, 1] - ends[:, 0]) / spec.cell_size).astype(np.int64)
         return cls(ends[:, 0], cells, spec.cell_size, faces, friction, space.axes)

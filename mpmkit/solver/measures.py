@@ -72,7 +72,7 @@ class Measures:
             high = float((p.position[:, a] + p.half_size[:, a]).max())
             low = float((p.position[:, a] - p.half_size[:, a]).min())
             if self.case.space_.radial:
-                diameters.append(2 * (high + self.grid.lower[0]))
+                diameters.append(2 * high)
             else:
                 diameters.append(2 * high if _cut(self.case, self.grid, a) else high - low)
         return float(np.mean(diameters))
@@ -85,8 +85,6 @@ class Measures:
     def _near_axis(self, p: Particles) -> np.ndarray:
         """Particles within one cell of the axis of the body."""
         offset = p.position[:, :-1] - self.axis_position
-        if self.case.space_.radial:
-            offset = offset + self.grid.lower[0]
         return np.einsum("pi,pi->p", offset, offset) <= self.grid.cell_size**2
 
 

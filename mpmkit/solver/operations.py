@@ -71,7 +71,7 @@ class SceneOperations:
         p, w = self.particles, self.window
         self._scatter(
             w.nodes, w.strides, w.lower, self.layout.slabs, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.volume, p.stress, p.pressure, momentum, forces,
+            p.mass, p.velocity, p.volume, p.stress, p.pressure, self.gravity, momentum, forces,
         )  # fmt: skip
 
     def _fold(self, first: int, last: int) -> None:
@@ -84,7 +84,7 @@ class SceneOperations:
     # --- Nodes -----------------------------------------------------------------------------------------------
 
     def solve_momentum(self, dt: float) -> None:
-        nodes.solve_momentum(self.window.nodes, *self._faces(), self.grid.friction, self.gravity, dt)
+        nodes.solve_momentum(self.window.nodes, *self._faces(), self.grid.friction, dt)
 
     # --- Nodes to particles ----------------------------------------------------------------------------------
 

@@ -42,7 +42,7 @@ def make_particles(case: Case) -> Particles:
     n, dim = position.shape
     body_of = np.concatenate([np.full(len(samples[i].volume), i, dtype=np.int32) for i in order])
     density = np.array([body.material.density for body in case.bodies])[body_of]
-    velocity = np.array([body.velocity or [0.0] * dim for body in case.bodies], dtype=float)[body_of]
+    velocity = np.concatenate([_initial_velocity(case.bodies[i], samples[i].position) for i in order])
     tracks_deformation = case.scheme.shape.particle_domain == "stretch" or any(
         m.constitutive_law.needs_deformation_gradient for m in materials
     )
@@ -82,6 +82,14 @@ def make_particles(case: Case) -> Particles:
         )
         start += count
     return particles
+
+
+def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:
+    if body.velocity is None:
+        return np.zeros_like(position)
+    if isinstance(body.velocity, list):
+        return np.tile(np.array(body.velocity), (len(position), 1))
+    return body.velocity.at(position)
 
 
 def _sample_body(case: Case, number: int) -> Sample:
