@@ -9,7 +9,7 @@ from typing import Any
 
 from .case.model import Case
 from .memory import expected_bytes, require_memory
-from .runner import use_threads
+from .threads import use_threads
 from .solver.simulation import Simulation
 
 TRIAL_SECONDS = 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,10 @@ from pydantic import ValidationError
 
 from ..errors import CaseError
 from ..registry import Registry, installed
-from .messages import explain
+from .messages import explain, shown
 from .model import Case, case_model
 from .overrides import apply_overrides
+from .strict_json import decode
 
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
@@ -27,16 +29,9 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
     """
-    path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise CaseError(f"case file '{path}' cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"case file '{path}' is not a UTF-8 text file") from None
-    data = read_json(text, str(path))
+    data = _read(path)
     if isinstance(data, dict):
-        data.setdefault("name", path.stem)
+        data.setdefault("name", _name_from(Path(path)))
     return parse_case(data, overrides, registry, source=str(path))
 
 
@@ -46,40 +41,39 @@ def parse_case(
     """Validate a case given as the content of a JSON file; see ``load_case``."""
     registry = registry or installed()
     if not isinstance(data, dict):
-        raise CaseError(f"{source}: a case is a JSON object, not {json.dumps(data)[:60]}")
-    data = apply_overrides(data, overrides)
+        raise CaseError(f"{source}: a case must be a JSON object, not {shown(data)}")
     model = case_model(registry)
     try:
+        data = apply_overrides(data, overrides)
+        data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
         return model.model_validate_json(json.dumps(data, allow_nan=False))
     except ValidationError as error:
         raise CaseError(f"{source}: {explain(error, data, model, registry)}") from None
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise CaseError(f"{source}: its objects and lists are nested too deeply") from None
+    except (TypeError, ValueError) as error:  # of json.dumps, for what Python can say and JSON cannot
         raise CaseError(f"{source}: {error}") from None
 
 
-def read_json(text: str, source: str) -> Any:
-    """Parse JSON that has no duplicate keys and no NaN or infinity."""
-
-    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        seen: dict[str, Any] = {}
-        for key, value in pairs:
-            if key in seen:
-                raise CaseError(f"{source}: the key '{key}' stands twice in one object; keep one")
-            seen[key] = value
-        return seen
-
-    def constant(name: str) -> float:
-        raise CaseError(f"{source}: {name} is not a number that a case can have; every number must be finite")
-
-    def number(digits: str) -> float:
-        value = float(digits)
-        return value if abs(value) != float("inf") else constant(digits)
-
+def _read(path: str | Path) -> Any:
     try:
-        return json.loads(text, object_pairs_hook=unique, parse_constant=constant, parse_float=number)
+        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a byte-order mark
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: the case file is not a UTF-8 text file") from None
+    except (OSError, ValueError) as error:  # ValueError: a path that no file can have
+        reason = getattr(error, "strerror", None) or str(error)
+        raise CaseError(f"{shown(str(path))}: the case file cannot be read: {reason}") from None
+    if not text.strip():
+        raise CaseError(f"{path}: the case file is empty; it must hold a JSON object")
+    try:
+        return decode(text)
     except json.JSONDecodeError as error:
-        raise CaseError(
-            f"{source} is not valid JSON: {error.msg} at line {error.lineno}, column {error.colno}"
-        ) from None
-    except (RecursionError, ValueError) as error:
-        raise CaseError(f"{source} is not a usable JSON file: {error}") from None
+        reason = f"{error.msg} at line {error.lineno}, column {error.colno}"
+        raise CaseError(f"{path}: the case file is not valid JSON: {reason}") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
+
+
+def _name_from(path: Path) -> str:
+    """The stem of a file as the name of a case, which is more restricted than that of a file."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", path.stem).strip("-._")[:100] or "case"

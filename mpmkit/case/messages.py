@@ -1,156 +1,136 @@
-"""From pydantic's errors to one sentence a person can act on: the field, the value, and what is allowed."""
+"""From pydantic's errors to one sentence a person can act on: the field, the value, and what is allowed.
+
+Pydantic only says where something is wrong. What is allowed there is read from the JSON Schema of the case, so
+that a third party's parameters are explained as well as the case's own and none of pydantic's wording gets out.
+"""
 
 from __future__ import annotations
 
 import difflib
 import json
-from typing import Any
+from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import core_schema
 
+from ..contracts import KINDS
 from ..registry import Registry
+from .allowed import Place, one_of
 
-SENTENCES = {
-    "missing": "{field} is missing{unit}",
-    "float_type": "{field} is {value}; it must be a number{unit}",
-    "int_type": "{field} is {value}; it must be a whole number",
-    "int_from_float": "{field} is {value}; it must be a whole number",
-    "string_type": "{field} is {value}; it must be a text",
-    "bool_type": "{field} is {value}; it must be true or false",
-    "list_type": "{field} is {value}; it must be a list",
-    "dict_type": "{field} is {value}; it must be an object",
-    "model_type": "{field} is {value}; it must be an object",
-    "model_attributes_type": "{field} is {value}; it must be an object",
-    "finite_number": "{field} is {value}; it must be finite",
-    "greater_than": "{field} is {value}; it must be greater than {gt:g}{unit}",
-    "greater_than_equal": "{field} is {value}; it must be at least {ge:g}{unit}",
-    "less_than": "{field} is {value}; it must be less than {lt:g}{unit}",
-    "less_than_equal": "{field} is {value}; it must be at most {le:g}{unit}",
-    "literal_error": "{field} is {value}; it must be {expected}",
-    "too_short": "{field} has {actual_length} entries; it needs at least {min_length}",
-    "too_long": "{field} has {actual_length} entries; it may have at most {max_length}",
-    "string_pattern_mismatch": "{field} is {value}; it must match {pattern}",
-    "string_too_long": "{field} is too long; it may have at most {max_length} characters",
-}
+LONGEST = 60
+"""Characters of a value that are shown."""
+PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
+"""Kinds of error whose text is pydantic's; the others carry the sentence of a validator."""
+TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
+
+Path = tuple[str | int, ...]
+
+
+class Complaint(NamedTuple):
+    """One error of pydantic, at its place in the case."""
+
+    path: Path
+    kind: str
+    value: Any
+    text: str
 
 
 def explain(error: ValidationError, data: Any, model: type[BaseModel], registry: Registry) -> str:
     """The first error as a sentence, and how many more there are."""
-    errors = error.errors(include_url=False)
-    first = min(errors, key=_rank)
-    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    return _sentence(first, data, model, registry) + more
-
-
-def _rank(item: Any) -> tuple[int, int]:
-    # A misspelt key usually causes a missing one as well: tell of the misspelling.
-    return (0 if item["type"] == "extra_forbidden" else 1, 0)
-
-
-def _sentence(item: Any, data: Any, model: type[BaseModel], registry: Registry) -> str:
-    keys = _keys_in_data(item["loc"], data, missing=item["type"] == "missing")
-    field = ".".join(str(key) for key in keys) or "the case"
-    kind, context = item["type"], item.get("ctx", {})
-    if kind == "extra_forbidden":
-        return _unknown_key(keys, item["loc"], model)
-    if kind in ("union_tag_invalid", "union_tag_not_found"):
-        return _unknown_choice(field, item, registry)
-    if kind == "value_error":
-        text = str(context["error"])
-        return f"{field}: {text}" if keys else text
-    if kind in SENTENCES:
-        unit = _unit(item["loc"], model)
-        values = {**context, "field": field, "value": _shown(item["input"]), "unit": f" [{unit}]" if unit else ""}
-        return SENTENCES[kind].format(**values)
-    return f"{field} is {_shown(item['input'])}; {item['msg'][0].lower()}{item['msg'][1:]}"
-
-
-def _shown(value: Any) -> str:
-    try:
-        text = json.dumps(value)
-    except (TypeError, ValueError):
-        text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _keys_in_data(loc: tuple, data: Any, missing: bool) -> list:
-    """The location without the tags that pydantic puts in for the members of unions."""
-    keys: list = []
-    here = data
-    for depth, key in enumerate(loc):
-        last = depth == len(loc) - 1
-        if isinstance(here, dict) and key in here:
-            keys.append(key)
-            here = here[key]
-        elif isinstance(here, list) and isinstance(key, int) and key < len(here):
-            keys.append(key)
-            here = here[key]
-        elif last and missing:
-            keys.append(key)
-    return keys
-
-
-def _models_at(loc: tuple, model: Any) -> Any:
-    """JSON Schema at a location, tags included, or None."""
     schema = model.model_json_schema()
-    definitions = schema.get("$defs", {})
+    complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
+    unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
+    # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
+    true_names = {(*c.path[:-1], _nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown}
+    others = [c for c in complaints if c not in unknown and not (c.kind == "missing" and c.path in true_names)]
+    first, *rest = unknown + others
+    more = f" (and {len(rest)} more)" if rest else ""
+    return " ".join((_sentence(first, data, schema, registry) + more).split())
 
-    def resolve(node: Any) -> Any:
-        while isinstance(node, dict) and "$ref" in node:
-            node = definitions[node["$ref"].rsplit("/", 1)[1]]
-        return node
 
-    def candidates(node: Any) -> list:
-        node = resolve(node)
-        found = [node]
-        for option in (node or {}).get("anyOf", []) + (node or {}).get("oneOf", []):
-            found += candidates(option)
-        return found
+def shown(value: Any) -> str:
+    """A value as it stands in the file, shortened."""
+    try:
+        text = json.dumps(value, ensure_ascii=False)
+    except (TypeError, ValueError, RecursionError):
+        text = repr(value)
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
-    here = [schema]
+
+def _complaint(item: Any, data: Any) -> Complaint:
+    """The error, its location cleared of the tags that pydantic puts in for the members of unions."""
+    loc, kind = item["loc"], item["type"]
+    keys: list[str | int] = []
+    here = data
     for key in loc:
-        following: list = []
-        options = [option for node in here for option in candidates(node)]
-        for option in options:
-            if isinstance(key, int) and "items" in option:
-                following.append(option["items"])
-            elif key in option.get("properties", {}):
-                following.append(option["properties"][key])
-        if not following:  # a tag: keep the members that carry it
-            tagged = [
-                option
-                for option in options
-                if any(rule.get("const") == key for rule in option.get("properties", {}).values())
-            ]
-            following = tagged or here
-        here = following
-    return [option for node in here for option in candidates(node)]
+        if (isinstance(here, dict) and key in here) or (
+            isinstance(here, list) and isinstance(key, int) and key < len(here)
+        ):
+            keys.append(key)
+            here = here[key]
+    if kind == "missing":
+        keys.append(loc[-1])
+    text = str(item["ctx"]["error"]) if "error" in item.get("ctx", {}) else item["msg"]
+    return Complaint(tuple(keys), kind, here, text)
 
 
-def _unit(loc: tuple, model: type[BaseModel]) -> str | None:
-    for node in _models_at(loc, model):
-        if node.get("unit"):
-            return node["unit"]
-    return None
+def _distinct(complaints: list[Complaint]) -> list[Complaint]:
+    """One complaint a place; of the alternatives that a value fails, the one that it comes closest to."""
+    first = {complaint.path: complaint for complaint in reversed(complaints)}
+    inner = {path[:depth] for path in first for depth in range(len(path))}
+    kept = [c for path, c in first.items() if path not in inner or c.kind not in PYDANTICS_OWN]
+    return sorted(kept, key=complaints.index)
 
 
-def _unknown_key(keys: list, loc: tuple, model: type[BaseModel]) -> str:
-    allowed = sorted({name for node in _models_at(loc[:-1], model) for name in node.get("properties", {})})
-    place = ".".join(str(key) for key in keys[:-1]) or "the case"
-    close = difflib.get_close_matches(str(loc[-1]), allowed, n=1)
-    hint = f"did you mean '{close[0]}'?" if close else f"it may have {', '.join(allowed)}"
-    return f"{place} has an unknown key '{loc[-1]}'; {hint}"
+def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry) -> str:
+    path, kind, value, text = complaint
+    if kind == "json_invalid":
+        return f"it is not valid JSON: {text}"
+    if kind == "extra_forbidden":
+        return _unknown_key(path, Place(schema, data, path[:-1]).keys())
+    if kind not in PYDANTICS_OWN:
+        return f"{_field(path)}: {text}" if path else text
+    if kind == "finite_number":
+        return f"{_field(path)} is {shown(value)}; it must be finite"
+    place = Place(schema, data, path)
+    choices, missing, selector = place.choices(), kind == "missing", place.selector()
+    if kind in TAG_ERRORS and isinstance(value, dict) and selector is not None:
+        key, choices = selector
+        path, missing, value = (*path, key), key not in value, value.get(key)
+        allowed = one_of(choices)
+    else:
+        allowed = one_of(choices) if choices and isinstance(value, str) else place.describe()
+    near = _nearest(value, choices)
+    hint = f"; did you mean {json.dumps(near)}?" if near is not None and not missing else ""
+    state = "is missing" if missing else f"is {shown(value)}"
+    return f"{_field(path)} {state}; it must be {allowed}{hint}{_unusable(path, value, registry)}"
 
 
-def _unknown_choice(field: str, item: Any, registry: Registry) -> str:
-    context, value = item.get("ctx", {}), item["input"]
-    tag = context.get("tag")
-    if tag is None and isinstance(value, dict):
-        key = str(context.get("discriminator", "'name'")).strip("'")
-        key = "name" if "(" in key else key
-        return f"{field} does not say its '{key}'"
-    allowed = str(context.get("expected_tags", "")).replace("'", "")
-    close = difflib.get_close_matches(str(tag), allowed.split(", "), n=1)
-    hint = f" (did you mean '{close[0]}'?)" if close else ""
-    broken = "".join(f"; {problem}" for problem in registry.problems)
-    return f"{field} is {_shown(tag if tag is not None else value)}; it must be one of {allowed}{hint}{broken}"
+def _field(path: Path) -> str:
+    return ".".join(str(key) for key in path) or "the case"
+
+
+def _unknown_key(path: Path, allowed: list[str]) -> str:
+    near = _nearest(path[-1], allowed)
+    hint = f"it may have {', '.join(allowed)}" if near is None else f"did you mean '{near}'?"
+    return f"{_field(path[:-1])} has an unknown key {shown(path[-1])}; {hint}"
+
+
+def _nearest(word: Any, allowed: list[Any]) -> str | None:
+    if not isinstance(word, str):
+        return None
+    by_case = {str(name).casefold(): name for name in allowed}
+    close = difflib.get_close_matches(word.casefold()[:LONGEST], by_case, n=1)
+    return by_case[close[0]] if close else None
+
+
+def _unusable(path: Path, name: Any, registry: Registry) -> str:
+    """Of the plug-ins that could not be loaded, those that may have been meant: by name, or else all of them."""
+    kinds = [key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))]
+    if not kinds or not registry.problems:
+        return ""
+    meant = [problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)]
+    if meant:
+        return "".join(f"; {problem}" for problem in meant)
+    names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)
+    return f"; plug-ins that could not be loaded are {names}, see mpmkit plugins"

@@ -37,7 +37,7 @@ class Friction(Model):
     """A Coulomb wall: it pushes but does not pull, and drags with at most ``coefficient`` times its push."""
 
     kind: Literal["friction"]
-    coefficient: float = Field(ge=0, description="Coulomb friction coefficient [1]")
+    coefficient: float = quantity("1", "Coulomb friction coefficient", ge=0)
 
 
 FaceName = Literal["slip", "stick", "periodic", "open", "symmetry"]
@@ -67,7 +67,7 @@ class Grid(Model):
 class SoundSpeedFactor(Model):
     """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h)."""
 
-    factor: float = Field(gt=0, description="multiple of √(2 g h) [1]")
+    factor: float = quantity("1", "multiple of √(2 g h)", gt=0)
 
 
 def _sound_speed_tag(value: Any) -> str:
@@ -85,8 +85,8 @@ class Material(Model):
 
     law: str
     density: float = quantity("kg/m^3", "initial density", gt=0)
-    sound_speed: SoundSpeed | None = Field(
-        default=None, description="artificial sound speed [m/s], or a factor of √(2 g h)"
+    sound_speed: SoundSpeed | None = quantity(
+        "m/s", "artificial sound speed, or a factor of √(2 g h)", default=None
     )
     equation_of_state: EquationOfState
 
@@ -133,7 +133,7 @@ class Body(Model):
 class TimeStep(Model):
     """The step as a fraction of the smallest limit that is not ignored."""
 
-    fraction: float = Field(default=0.5, gt=0, le=1, description="fraction of the critical step [1]")
+    fraction: float = quantity("1", "fraction of the critical step", gt=0, le=1, default=0.5)
     ignore: list[Literal["acoustic", "viscous", "advective"]] = Field(
         default=[], description="limits that the step may exceed; a warning says by how much"
     )

@@ -8,6 +8,11 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..errors import CaseError
+from .messages import shown
+from .strict_json import decode
+
+DEEPEST = 20
+"""Keys in a path: far more than any case has levels."""
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
@@ -15,48 +20,55 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> dict[str,
 
     A part of the path that is a number is an index into a list. A plug-in that is named by a string
     turns into an object when one of its parameters is set: ``scheme.shape.domain=stretch``.
+
+    Raises:
+        CaseError: an override cannot be read, or its path leads nowhere.
     """
     data = copy.deepcopy(data)
     for override in overrides:
         path, sign, text = override.partition("=")
-        if not sign or not path.strip("."):
-            raise CaseError(f"--set {override}: it must read path.to.key=value, such as scheme.order=usf")
-        _assign(data, path.split("."), _value(text), override)
+        keys = path.split(".")
+        try:
+            if not sign or not all(keys) or len(keys) > DEEPEST:
+                raise ValueError("it must read path.to.key=value, such as scheme.order=usf")
+            _assign(data, keys, _value(text))
+        except ValueError as error:
+            given = override if len(override) <= 60 else override[:57] + "..."
+            raise CaseError(f"--set {given}: {error}") from None
     return data
 
 
 def _value(text: str) -> Any:
     try:
-        return json.loads(text, parse_constant=lambda name: _refuse(name))
+        return decode(text)
     except json.JSONDecodeError:
         return text
 
 
-def _refuse(name: str) -> Any:
-    raise CaseError(f"--set: {name} is not a number that a case can have; every number must be finite")
-
-
-def _assign(data: dict[str, Any], keys: list[str], value: Any, override: str) -> None:
+def _assign(data: dict[str, Any], keys: list[str], value: Any) -> None:
     here: Any = data
     for depth, key in enumerate(keys):
-        last = depth == len(keys) - 1
-        if isinstance(here, list):
-            if not key.isdigit() or int(key) >= len(here):
-                raise CaseError(
-                    f"--set {override}: '{'.'.join(keys[:depth])}' is a list of {len(here)}, so '{key}' must be "
-                    f"a number from 0 to {len(here) - 1}"
-                )
-            index: Any = int(key)
-        elif isinstance(here, dict):
-            index = key
-        else:
-            raise CaseError(f"--set {override}: '{'.'.join(keys[:depth])}' is {here!r} and has no '{key}' in it")
-        if last:
+        index = _index(here, key, ".".join(keys[:depth]))
+        if depth == len(keys) - 1:
             here[index] = value
             return
         below = here[index] if isinstance(here, list) else here.get(index)
         if below is None:
             below = here[index] = {}
-        elif isinstance(below, str) and keys[:1] == ["scheme"]:
+        elif isinstance(below, str) and (depth == 1 and keys[0] == "scheme" or key == "equation_of_state"):
             below = here[index] = {"name": below}
         here = below
+
+
+def _index(here: Any, key: str, path: str) -> str | int:
+    """The key, or the number that it stands for in a list."""
+    if isinstance(here, dict):
+        return key
+    if not isinstance(here, list):
+        raise ValueError(f"{path} is {shown(here)}, so that it has no '{key}' in it")
+    if not here:
+        raise ValueError(f"{path} is an empty list, so that it has no '{key}' in it")
+    if not (key.isascii() and key.isdigit() and int(key) < len(here)):
+        allowed = "0" if len(here) == 1 else f"a number from 0 to {len(here) - 1}"
+        raise ValueError(f"{path} is a list of {len(here)}, so that '{key}' must be {allowed}")
+    return int(key)

@@ -6,6 +6,8 @@ for those that average, which they show by their weights changing with the half-
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numba
 import numpy as np
 import pytest
@@ -71,7 +73,7 @@ def rings(seed=2, n=N):
     return radius, half_size
 
 
-# --- Plain axes ------------------------------------------------------------------------------------------------
+# --- Plain axes ---------------------------------------------------------------------------------------------
 
 
 @each
@@ -185,7 +187,7 @@ def test_thread_count_changes_no_bit(shape):
         np.testing.assert_array_equal(one, two)
 
 
-# --- The radial axis -------------------------------------------------------------------------------------------
+# --- The radial axis ----------------------------------------------------------------------------------------
 
 
 @each
@@ -244,7 +246,7 @@ def test_radial_tables_tend_to_the_plain_ones_far_from_the_axis(shape):
     np.testing.assert_allclose(hoop * far, plain_weight[:, 0], rtol=0, atol=10 * order)
 
 
-# --- Averages over the box, by quadrature -----------------------------------------------------------------------
+# --- Averages over the box, by quadrature -------------------------------------------------------------------
 
 
 def averages(shape):
@@ -264,7 +266,7 @@ def box_integral(f, low, high):
     """∫ f over each box, split at the nodes, where the hats have their kinks."""
     total = 0.0
     cuts = [low, *[k * DX for k in range(-1, CELLS + 3) if low < k * DX < high], high]
-    for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+    for a, b in pairwise(cuts):
         points = 0.5 * (a + b) + 0.5 * (b - a) * ABSCISSAE
         total += 0.5 * (b - a) * float(np.sum(QUADRATURE * f(points)))
     return total

@@ -1,0 +1,50 @@
+"""What was run, with what, and where: the global attributes of a history."""
+
+from __future__ import annotations
+
+import json
+import platform
+
+import numba
+import numpy as np
+
+from . import __version__
+from .case.model import Case
+from .registry import installed
+
+
+def plugins_used(case: Case) -> list[dict[str, str]]:
+    """Every plug-in that the case uses, with the distribution and version that it came from."""
+    scheme = case.scheme
+    used = [(kind, getattr(scheme, kind)) for kind in ("shape", "order", "velocity", "volumetric")]
+    for body in case.bodies:
+        law = body.material.constitutive_law
+        used.append(("law", law))
+        if law.uses_equation_of_state:
+            used.append(("equation_of_state", body.material.equation_of_state))
+    found: list[dict[str, str]] = []
+    for kind, plugin in used:
+        entry = {"kind": kind, "name": plugin.name}
+        origin = installed().plugins[kind].get(plugin.name)
+        if origin is not None:
+            entry |= {"distribution": origin.distribution, "version": origin.version}
+        if entry not in found:
+            found.append(entry)
+    return found
+
+
+def attributes(case: Case, threads: int) -> dict[str, str]:
+    """Global attributes of a history; what is structured is JSON."""
+    machine = {
+        "platform": platform.platform(),
+        "processor": platform.processor() or platform.machine(),
+        "python": platform.python_version(),
+        "threads": threads,
+    }
+    return {
+        "title": case.name,
+        "case": json.dumps(case.model_dump(mode="json")),
+        "versions": json.dumps({"mpmkit": __version__, "numpy": np.__version__, "numba": numba.__version__}),
+        "plugins": json.dumps(plugins_used(case)),
+        "machine": json.dumps(machine),
+    }

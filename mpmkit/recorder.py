@@ -1,0 +1,84 @@
+"""What a run remembers: rows of the history and frames, at the times that the case asks for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .output import FrameWriter, History, RunDirectory, Variable
+from .schedule import Schedule
+from .solver.measures import PARTICLE_FIELDS, frame_fields
+from .solver.simulation import Simulation
+
+COLUMNS = (
+    Variable("spread_diameter", "m", "diameter of the material, particle domains included"),
+    Variable("height", "m", "largest height of the material above the lower face of the grid"),
+    Variable("axis_height", "m", "height of the material within one cell of its axis"),
+    Variable("slump", "m", "initial height minus height on the axis"),
+    Variable("kinetic_energy", "J", "kinetic energy of the particles"),
+    Variable("potential_energy", "J", "potential energy in gravity, zero at the origin"),
+    Variable("strain_energy", "J", "elastic energy of the laws that have one"),
+    Variable("compressive_energy", "J", "energy stored by the equation of state"),
+    Variable("total_mass", "kg", "mass of all particles"),
+    Variable("momentum", "kg m/s", "momentum of all particles", component=True),
+    Variable("max_speed", "m/s", "largest particle speed"),
+    Variable("time_step", "s", "length of the time step"),
+)
+"""The scalars and vectors of every history."""
+
+ROWS, FRAMES = 400, 20
+"""Rows and frames of a run whose case does not say how often."""
+
+
+class Recorder:
+    """Adds to the history of a simulation, and to its frames if it has a run directory.
+
+    A row or a frame is of the step that ends nearest to the time it is due: no step is shortened for it.
+    """
+
+    def __init__(self, simulation: Simulation, attributes: dict[str, str], directory: RunDirectory | None) -> None:
+        case = simulation.case
+        settings, until = case.output, case.until
+        self.simulation = simulation
+        self.directory = directory
+        self.history = History(COLUMNS, attributes, case.space_.axes)
+        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_)
+        self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
+        self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
+        self._last_row = self._last_frame = -1  # steps
+
+    def record(self) -> None:
+        """Add a row, and a frame, where one is due."""
+        now = self.simulation.time + 0.5 * self.simulation.time_step
+        if self._rows_due.passed(now):
+            self._add_row()
+        if self.frames is not None and self._frames_due.passed(now):
+            self._add_frame()
+
+    def finish(self) -> None:
+        """Add the state in which the run ended, however it ended, and write the history."""
+        if self._last_row != self.simulation.steps:
+            self._add_row()
+        if self.frames is not None and self._last_frame != self.simulation.steps:
+            self._add_frame()
+        if self.directory is not None:
+            self.history.write(self.directory.history)
+
+    def _add_row(self) -> None:
+        simulation, particles = self.simulation, self.simulation.particles
+        values = simulation.measures(particles) | {"time_step": simulation.time_step}
+        by_number = np.argsort(particles.number)
+        fields = {
+            name: PARTICLE_FIELDS[name](particles, simulation.grid)[by_number]
+            for name in simulation.case.output.particle_history
+        }
+        self.history.record(simulation.time, values, fields)
+        self._last_row = simulation.steps
+        if self.directory is not None:
+            self.history.flush_if_due(self.directory.history)
+
+    def _add_frame(self) -> None:
+        assert self.frames is not None
+        simulation, particles = self.simulation, self.simulation.particles
+        position = particles.position + simulation.grid.lower
+        self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
+        self._last_frame = simulation.steps

@@ -1,0 +1,384 @@
+"""What every combination of shape function, update order and velocity update must do, in every space.
+
+Mass and momentum are kept to rounding, results do not depend on the number of threads nor on where on the
+grid a body is, and mirrors and periodic faces stand for the scene that they replace.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numba
+import numpy as np
+import pytest
+
+import mpmkit
+from mpmkit.registry import installed
+
+REGISTRY = installed()
+SCHEMES = list(product(*(REGISTRY.of_kind(kind) for kind in ("shape", "order", "velocity"))))
+SPACES = ("plane-strain", "axisymmetric", "3d")
+DX = 0.0625
+RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
+SYRUP = {"law": "newtonian", "density": 1200.0, "viscosity": 5.0, "sound_speed": 10.0}
+
+each_scheme = pytest.mark.parametrize("scheme", SCHEMES, ids="-".join)
+each_space = pytest.mark.parametrize("space", SPACES)
+
+
+@pytest.fixture(autouse=True)
+def _one_thread():
+    numba.set_num_threads(1)
+
+
+def simulate(space, scheme, bodies, domain, faces=None, gravity=None, fraction=0.4, volumetric="own"):
+    """A scene on cells of DX; ``domain`` in cells, ``bodies`` as (corner, corner, material, velocity)."""
+    axes = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}[space]
+    shape, order, velocity = scheme
+    case = mpmkit.parse_case(
+        {
+            "space": space,
+            "until": 1.0,
+            "gravity": gravity or [0.0] * len(axes),
+            "grid": {
+                "cell_size": DX,
+                "domain": {a: [low * DX, high * DX] for a, (low, high) in zip(axes, domain, strict=True)},
+                "faces": faces or {},
+            },
+            "bodies": [
+                {
+                    "shape": {
+                        "kind": "box",
+                        "lower": [DX * x for x in lower],
+                        "upper": [DX * x for x in upper],
+                    },
+                    "material": material,
+                    "velocity": velocity,
+                }
+                for lower, upper, material, velocity in bodies
+            ],
+            "scheme": {
+                "shape": shape,
+                "order": order,
+                "velocity": velocity,
+                "volumetric": volumetric,
+                "time_step": {"fraction": fraction},
+            },
+        }
+    )
+    return mpmkit.Simulation(case)
+
+
+def shake(simulation, size=0.5, seed=21):
+    """Add a smooth velocity field, so that the body deforms and turns; it vanishes on the axis r = 0."""
+    p = simulation.particles
+    x = (p.position - p.position.mean(axis=0)) / DX
+    if simulation.case.space == "axisymmetric":
+        x[:, 0] = p.position[:, 0] / DX
+    rng = np.random.default_rng(seed)
+    waves = rng.uniform(-0.4, 0.4, (p.dim, p.dim))
+    p.velocity += size * np.sin(x @ waves)
+    if simulation.case.space == "axisymmetric":
+        p.velocity[:, 0] = size * np.sin(0.3 * p.position[:, 0] / DX)
+
+
+def by_number(simulation, field="position"):
+    p = simulation.particles
+    return getattr(p, field)[np.argsort(p.number)]
+
+
+def block(space, corner=3, size=4):
+    """Corners of a block in cells, and a domain with room around it; a cylinder on the axis if axisymmetric."""
+    dim = 3 if space == "3d" else 2
+    lower, upper = [corner] * dim, [corner + size] * dim
+    if space == "axisymmetric":
+        lower[0], upper[0] = 0, size
+    return lower, upper, [[0, 2 * corner + size]] * dim
+
+
+# --- Conservation -------------------------------------------------------------------------------------------
+
+
+@each_scheme
+@each_space
+def test_mass_and_momentum_are_kept_by_a_deforming_body(space, scheme):
+    """No wall, no gravity: Σ m and Σ m v to rounding; of an axisymmetric body the axial component."""
+    lower, upper, domain = block(space)
+    velocity = [0.7] * len(lower)
+    if space == "axisymmetric":
+        velocity[0] = 0.0
+    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain)
+    shake(simulation)
+    start = simulation.measures(simulation.particles)
+    scale = float(np.sum(simulation.particles.mass * np.linalg.norm(simulation.particles.velocity, axis=1)))
+    for _ in range(40):
+        simulation.advance()
+        nodal_mass = simulation.operations.window.nodes[:, 0].sum()
+        assert nodal_mass == pytest.approx(start["total_mass"], rel=1e-13)
+    end = simulation.measures(simulation.particles)
+    assert end["strain_energy"] > 1e-3 * start["kinetic_energy"]  # it did deform
+    assert end["total_mass"] == start["total_mass"]
+    kept = slice(1, None) if space == "axisymmetric" else slice(None)
+    np.testing.assert_allclose(end["momentum"][kept], start["momentum"][kept], rtol=0, atol=1e-12 * scale)
+
+
+@each_scheme
+@each_space
+def test_free_fall_is_a_parabola(space, scheme):
+    """The centre of mass of a deforming body falls as x0 + Σ dt v, v = v0 + Σ dt g, to rounding."""
+    lower, upper, domain = block(space)
+    dim = len(lower)
+    velocity, gravity = [0.3] * dim, [0.8] * (dim - 1) + [-9.81]
+    if space == "axisymmetric":
+        velocity[0] = gravity[0] = 0.0
+    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain, gravity=gravity)
+    shake(simulation)
+    p = simulation.particles
+    v = p.mass @ p.velocity / p.mass.sum()
+    x = p.mass @ p.position / p.mass.sum()
+    for _ in range(40):
+        dt = simulation.advance()
+        v = v + dt * np.array(gravity)
+        x = x + dt * v
+    kept = slice(1, None) if space == "axisymmetric" else slice(None)
+    np.testing.assert_allclose((p.mass @ p.velocity / p.mass.sum())[kept], v[kept], rtol=0, atol=1e-12)
+    np.testing.assert_allclose((p.mass @ p.position / p.mass.sum())[kept], x[kept], rtol=0, atol=1e-12)
+
+
+@each_scheme
+@each_space
+def test_uniform_motion_strains_nothing(space, scheme):
+    lower, upper, domain = block(space)
+    velocity = [0.7, -0.4, 0.5][: len(lower)]
+    if space == "axisymmetric":
+        velocity[0] = 0.0
+    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain)
+    start = by_number(simulation).copy()
+    for _ in range(30):
+        simulation.advance()
+    shift = simulation.time * np.array(velocity)
+    np.testing.assert_allclose(by_number(simulation), start + shift, rtol=0, atol=1e-13)
+    assert np.abs(simulation.particles.stress).max() < 1e-9 * RUBBER["youngs_modulus"]
+
+
+# --- Threads ------------------------------------------------------------------------------------------------
+
+
+def run_with_threads(threads, make, steps):
+    numba.set_num_threads(min(threads, numba.config.NUMBA_NUM_THREADS))
+    simulation = make()
+    shake(simulation)
+    for _ in range(steps):
+        simulation.advance()
+    assert simulation.operations.layout.sorts > 1  # the order of particles changed on the way
+    return simulation.particles.arrays()
+
+
+def assert_same_bits(make, steps=60):
+    one, two = (run_with_threads(threads, make, steps) for threads in (1, 2))
+    for name in one:
+        np.testing.assert_array_equal(one[name], two[name], err_msg=name)
+
+
+@each_scheme
+@each_space
+def test_thread_count_changes_no_bit(space, scheme):
+    dim = 3 if space == "3d" else 2
+    lower, upper = [3, 3, 3][:dim], [[16, 9], [16, 5, 6]][dim - 2]
+    domain = [[0, 24], [0, 14], [0, 14]][:dim]
+    velocity = [3.0, 0.5, 0.5][:dim]
+    if space == "axisymmetric":
+        lower[0], velocity = 0, [0.0, -3.0]
+    assert_same_bits(lambda: simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain))
+
+
+@pytest.mark.parametrize("volumetric", REGISTRY.of_kind("volumetric"))
+@each_space
+def test_thread_count_changes_no_bit_of_a_fluid(space, volumetric):
+    dim = 3 if space == "3d" else 2
+    lower, upper = [0, 0, 0][:dim], [[16, 9], [16, 5, 6]][dim - 2]
+    domain = [[0, 30], [0, 14], [0, 14]][:dim]
+    faces = {"z_min": "stick", "x_min": "symmetry"} if space != "axisymmetric" else {"z_min": "stick"}
+    bodies = [(lower, upper, SYRUP, None)]
+    gravity = [0.0] * (dim - 1) + [-9.81]
+
+    def make():
+        simulation = simulate(
+            space, ("cpgimp", "usl", "flip"), bodies, domain, faces, gravity, volumetric=volumetric
+        )
+        simulation.particles.velocity[:, 0] += 2.0 * simulation.particles.position[:, 0]
+        return simulation
+
+    assert_same_bits(make, steps=80)
+
+
+# --- Mirrors ------------------------------------------------------------------------------------------------
+
+
+@each_scheme
+@pytest.mark.parametrize("space", ["plane-strain", "3d"])
+def test_symmetry_planes_stand_for_the_other_half(space, scheme):
+    """A falling, spreading block on a slip floor: a half (2-D) or a quarter (3-D) is the full model, cut."""
+    dim = 3 if space == "3d" else 2
+    gravity = [0.0] * (dim - 1) + [-9.81]
+    faces = {"z_min": "slip"}
+    body = ([-2] * (dim - 1) + [0], [2] * (dim - 1) + [4], RUBBER, None)
+    whole = simulate(space, scheme, [body], [[-5, 5]] * (dim - 1) + [[0, 7]], faces, gravity)
+    cuts = {"x_min": "symmetry", "y_min": "symmetry"} if dim == 3 else {"x_min": "symmetry"}
+    part = simulate(space, scheme, [body], [[0, 5]] * (dim - 1) + [[0, 7]], {**faces, **cuts}, gravity)
+    for simulation in (whole, part):
+        p = simulation.particles
+        x = p.position + simulation.grid.lower
+        p.velocity[:, :-1] = 3.0 * np.sin(2.0 * x[:, :-1])
+        p.velocity[:, -1] = -(x[:, -1] ** 2)
+    kept = np.all(by_number(whole)[:, :-1] + whole.grid.lower[:-1] > 0, axis=1)
+    assert kept.sum() == len(part.particles)
+    for _ in range(20):
+        whole.advance()
+        part.advance()
+    assert whole.time == pytest.approx(part.time, rel=1e-12)
+    np.testing.assert_allclose(
+        by_number(whole)[kept] + whole.grid.lower, by_number(part) + part.grid.lower, rtol=0, atol=1e-9 * DX
+    )
+    for field, scale in (("velocity", 1.0), ("stress", RUBBER["youngs_modulus"]), ("volume_ratio", 1.0)):
+        found, expected = by_number(part, field), by_number(whole, field)[kept]
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * scale, err_msg=field)
+
+
+@each_scheme
+def test_a_slip_floor_stands_for_the_mirrored_body(scheme):
+    """A block that is thrown on a slip floor moves as one that meets its mirror image."""
+    body = ([3, 0], [7, 4], RUBBER, [0.0, -1.0])
+    image = ([3, -4], [7, 0], RUBBER, [0.0, 1.0])
+    floor = simulate("plane-strain", scheme, [body], [[0, 10], [0, 8]], {"z_min": "slip"})
+    twins = simulate("plane-strain", scheme, [body, image], [[0, 10], [-8, 8]])
+    for _ in range(25):
+        floor.advance()
+        twins.advance()
+    upper = by_number(twins, "body") == 0
+    assert np.abs(by_number(floor, "stress")).max() > 1.0
+    np.testing.assert_allclose(
+        by_number(floor), (by_number(twins) + twins.grid.lower)[upper], rtol=0, atol=1e-9 * DX
+    )
+    np.testing.assert_allclose(
+        by_number(floor, "velocity"), by_number(twins, "velocity")[upper], rtol=0, atol=1e-9
+    )
+
+
+# --- Where on the grid --------------------------------------------------------------------------------------
+
+
+@each_scheme
+@pytest.mark.parametrize("direction", [1, -1], ids=["up", "down"])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_window_follows_a_fast_body(scheme, axis, direction):
+    """A small body crosses many slabs of a big domain; not one gram is left outside the stored nodes."""
+    lower, upper = [100, 100], [101, 102]
+    velocity = [0.0, 0.0]
+    velocity[axis] = 60.0 * direction
+    simulation = simulate("plane-strain", scheme, [(lower, upper, RUBBER, velocity)], [[0, 200], [0, 200]])
+    mass = simulation.particles.mass.sum()
+    start = by_number(simulation).copy()
+    while np.ptp([start.mean(axis=0)[axis], simulation.particles.position.mean(axis=0)[axis]]) < 60 * DX:
+        simulation.advance()
+        window = simulation.operations.window
+        base, last = simulation.operations.base, simulation.operations.weight.shape[2] - 1
+        assert (base >= window.lower).all()
+        assert (base + last < window.lower + window.shape[:2]).all()
+        assert window.nodes[:, 0].sum() == pytest.approx(mass, rel=1e-13)
+        assert len(window.nodes) < 400  # of 41,000
+    shift = simulation.time * np.array(velocity)
+    np.testing.assert_allclose(by_number(simulation), start + shift, rtol=0, atol=1e-11)
+
+
+@each_scheme
+def test_motion_does_not_depend_on_the_place(scheme):
+    """A deforming body does the same 1000 cells further on, window, slabs and all."""
+    far = 1003
+    found = []
+    for corner in (3, far):
+        box = ([corner, corner], [corner + 6, corner + 4], RUBBER, [4.0, 1.0])
+        simulation = simulate("plane-strain", scheme, [box], [[0, 2000], [0, 2000]])
+        shake(simulation)
+        for _ in range(60):
+            simulation.advance()
+        found.append(by_number(simulation) - corner * DX)
+    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-9 * DX)
+
+
+@each_scheme
+@pytest.mark.parametrize("direction", [1, -1], ids=["up", "down"])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_periodic_faces_wrap_the_unwrapped_motion(scheme, axis, direction):
+    period = 8
+    velocity = [0.0, 0.0]
+    velocity[axis] = 20.0 * direction
+    name = "xz"[axis]
+    lower, upper = [20, 20], [24, 23]
+    unwrapped = simulate("plane-strain", scheme, [(lower, upper, RUBBER, velocity)], [[0, 44], [0, 44]])
+    domain = [[12, 32], [12, 32]]
+    domain[axis] = [18, 18 + period]
+    faces = {f"{name}_min": "periodic", f"{name}_max": "periodic"}
+    wrapped = simulate("plane-strain", scheme, [(lower, upper, RUBBER, velocity)], domain, faces)
+    for simulation in (unwrapped, wrapped):
+        shake(simulation)
+        for _ in range(60):
+            simulation.advance()
+    moved = by_number(unwrapped) - (by_number(wrapped) + wrapped.grid.lower)
+    turns = moved[:, axis] / (period * DX)
+    assert np.abs(turns).max() >= 1  # it did go round
+    np.testing.assert_allclose(turns, np.rint(turns), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(moved[:, 1 - axis], 0.0, rtol=0, atol=1e-9 * DX)
+    for field, scale in (("velocity", 20.0), ("stress", RUBBER["youngs_modulus"])):
+        np.testing.assert_allclose(
+            by_number(wrapped, field), by_number(unwrapped, field), rtol=0, atol=1e-9 * scale, err_msg=field
+        )
+
+
+@each_scheme
+def test_a_body_that_fills_a_period_has_no_ends(scheme):
+    """A uniform bar between periodic faces moves through itself without any stress."""
+    faces = {"x_min": "periodic", "x_max": "periodic"}
+    body = ([0, 3], [6, 5], RUBBER, [5.0, 0.0])
+    simulation = simulate("plane-strain", scheme, [body], [[0, 6], [0, 8]], faces)
+    for _ in range(60):
+        simulation.advance()
+    assert np.abs(simulation.particles.stress).max() < 1e-9 * RUBBER["youngs_modulus"]
+    np.testing.assert_allclose(
+        simulation.particles.velocity, [[5.0, 0.0]] * len(simulation.particles), atol=1e-12
+    )
+
+
+# --- Several materials --------------------------------------------------------------------------------------
+
+
+@each_scheme
+@each_space
+def test_two_materials_meet(space, scheme):
+    """A drop and a rubber block collide: each keeps its own law and mass, their momentum adds up."""
+    dim = 3 if space == "3d" else 2
+    side = [0 if space == "axisymmetric" else 3] * (dim - 1)
+    across = [3 if space == "axisymmetric" else 6] * (dim - 1)
+    drop = ([*side, 7], [*across, 10], SYRUP, [0.0] * (dim - 1) + [-1.0])
+    rubber = ([*side, 4], [*across, 7], RUBBER, [0.0] * (dim - 1) + [1.0])
+    domain = [[0, 9]] * (dim - 1) + [[0, 14]]
+    simulation = simulate(space, scheme, [drop, rubber], domain, fraction=0.2)
+    p = simulation.particles
+    names = by_number(simulation, "body").copy()
+    momentum = (p.mass @ p.velocity)[-1]
+    scale = float(np.sum(p.mass * np.abs(p.velocity[:, -1])))
+    for _ in range(60):
+        simulation.advance()
+        simulation.check()
+    assert (p.mass @ p.velocity)[-1] == pytest.approx(momentum, abs=1e-12 * scale)
+    np.testing.assert_array_equal(by_number(simulation, "body"), names)
+    density = np.array([SYRUP["density"], RUBBER["density"]])[p.body]
+    assert p.mass / p.initial_volume == pytest.approx(density, rel=1e-12)
+    for group in p.groups:
+        assert (density[group.part] == group.density).all()
+    drops, solid = p.body == 0, p.body == 1
+    assert (p.pressure[solid] == 0).all()  # the law of rubber has a stress of its own
+    assert p.pressure[drops].max() > 0.0
+    # The collision slows both down: what the drop loses the block takes up.
+    assert p.velocity[drops, -1].mean() > -0.95
+    assert p.velocity[solid, -1].mean() < 0.95
