@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import psutil
 
@@ -9,11 +11,16 @@ from .case.model import Case
 from .errors import CaseError
 from .geometry import expected_count
 from .kernels.scatter import NODE
+from .output import PARTICLE_VARIABLES
+from .recorder import ROWS
 from .solver.scene import kept_box, particles_along_axes
 
-BYTES = 8
-PARTICLE_SCALARS = 8
-"""number, body, mass, initial volume, volume, volume ratio, pressure, volumetric rate."""
+DOUBLE = 8
+INDEX = 4
+SORTING = 9
+"""Doubles a particle that a sort holds for a moment: keys, order, cells, and a copy of the widest array."""
+MARGIN = 6
+"""Nodes along an axis by which the window is wider than the cells of the material."""
 
 
 def expected_particles(case: Case) -> float:
@@ -30,29 +37,50 @@ def expected_particles(case: Case) -> float:
     )
 
 
-def bytes_per_particle(case: Case) -> int:
-    """Bytes a particle of a case: its state, its tables of weights, and its share of a sort's copies."""
-    dim, support = case.space_.dim, case.scheme.shape.support
-    tracks = case.scheme.shape.particle_domain == "stretch" or any(
-        body.material.constitutive_law.needs_deformation_gradient for body in case.bodies
-    )
-    laws = [body.material.constitutive_law for body in case.bodies]
-    state = max(sum(int(np.prod(v.shape)) for v in law.state.values()) for law in laws)
-    doubles = PARTICLE_SCALARS + 4 * dim + 9 + 6 + (9 if tracks else 0) + state  # vectors, L, stress, F
-    tables = 2 * dim * support + (support if case.space_.radial else 0) + dim / 2
-    sorting = 9 + 4  # a copy of the largest array; keys and order
-    return int(BYTES * (doubles + tables + sorting))
-
-
 def expected_bytes(case: Case, particles: float) -> int:
-    """Memory that a run of the case takes, without Python and its libraries."""
-    cells = case.grid.cell_size
-    volume = particles * float(np.prod([cells] * case.space_.dim)) / np.prod(
-        particles_along_axes(case.bodies[0], case.space_.dim)
-    )
-    # The window is the material's bounding box; a body is rarely emptier than a tenth of its box.
-    nodes = 10 * volume / cells**case.space_.dim
-    return int(particles * bytes_per_particle(case) + nodes * NODE * BYTES)
+    """Memory that a run takes at its start, beside the 200 MB or so of Python and its libraries.
+
+    As the material spreads, so does the window of nodes that covers it; particles take most by far.
+    """
+    kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
+    return int(particles * (bytes_per_particle(case) + kept) + window_nodes(case) * NODE * DOUBLE)
+
+
+def bytes_per_particle(case: Case) -> int:
+    """State of a particle, its tables of weights, and its share of a sort."""
+    dim, support = case.space_.dim, case.scheme.shape.support
+    laws = [body.material.constitutive_law for body in case.bodies]
+    follows_stretch = case.scheme.shape.particle_domain == "stretch"
+    tracks = follows_stretch or any(law.needs_deformation_gradient for law in laws)
+    number_mass_volumes_pressure_rate = 8
+    vectors = 4 * dim
+    gradient_and_stress = 9 + 6
+    state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
+    doubles = number_mass_volumes_pressure_rate + vectors + gradient_and_stress + 9 * tracks + state
+    tables = 2 * dim * support + support * case.space_.radial
+    body_and_base = (1 + dim) * INDEX
+    return int(DOUBLE * (doubles + tables + SORTING) + body_and_base)
+
+
+def window_nodes(case: Case) -> float:
+    """Nodes that are stored when a run begins: those around the bodies, and a quarter more."""
+    bounds = [body.shape.bounds(case.space_) for body in case.bodies]
+    domain_lower, domain_upper = kept_box(case)
+    lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
+    upper = np.minimum(np.max([high for _, high in bounds], axis=0), domain_upper)
+    return 1.25 * float(np.prod((upper - lower) / case.grid.cell_size + MARGIN))
+
+
+def _kept_rows(case: Case) -> float:
+    interval = case.output.history_interval
+    return ROWS if interval is None else case.until / interval
+
+
+def _doubles_per_row(case: Case) -> int:
+    """Numbers a particle that a row of the history keeps, twice: once more while the file is written."""
+    width = {"component": case.space_.dim, "tensor_component": 6}
+    fields = [PARTICLE_VARIABLES[name] for name in case.output.particle_history]
+    return 2 * sum(math.prod(width[dimension] for dimension in field.trailing) for field in fields)
 
 
 def require_memory(case: Case) -> None:
@@ -65,7 +93,12 @@ def require_memory(case: Case) -> None:
     needed, there = expected_bytes(case, particles), psutil.virtual_memory().total
     if needed > there:
         raise CaseError(
-            f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles and needs "
-            f"{needed / 2**30:.3g} GiB of memory, more than the {there / 2**30:.3g} GiB of this machine; "
-            "use larger cells, fewer particles a cell, or a symmetry plane"
+            f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
+            f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)}; use larger cells, "
+            f"fewer particles a cell, {'fewer rows of particle_history, ' * bool(case.output.particle_history)}"
+            "or a symmetry plane"
         )
+
+
+def _gib(size: float) -> str:
+    return f"{size / 2**30:.3g} GiB"

@@ -9,8 +9,8 @@ from typing import Any
 
 from .case.model import Case
 from .memory import expected_bytes, require_memory
-from .threads import use_threads
 from .solver.simulation import Simulation
+from .threads import use_threads
 
 TRIAL_SECONDS = 1.0
 """How long the scene is run to measure its speed on this machine, after one step to compile."""

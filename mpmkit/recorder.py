@@ -35,7 +35,9 @@ class Recorder:
     A row or a frame is of the step that ends nearest to the time it is due: no step is shortened for it.
     """
 
-    def __init__(self, simulation: Simulation, attributes: dict[str, str], directory: RunDirectory | None) -> None:
+    def __init__(
+        self, simulation: Simulation, attributes: dict[str, str], directory: RunDirectory | None
+    ) -> None:
         case = simulation.case
         settings, until = case.output, case.until
         self.simulation = simulation

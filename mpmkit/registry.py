@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import difflib
+import inspect
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from types import ModuleType
 
 import pluggy
 
 from .contracts import API_VERSION, KINDS, Plugin, hooks
+
+RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
+"""Parameters that a plug-in cannot have, because something else stands at that key of a case."""
+NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
 @dataclass(frozen=True)
@@ -33,54 +42,61 @@ class Problem:
     distribution: str
     entry_point: str
     reason: str
+    kind: str | None = None
+    """Kind and name of the plug-in, where the entry point got far enough to say them."""
+    name: str | None = None
 
     def __str__(self) -> str:
-        return f"plug-in '{self.entry_point}' of distribution '{self.distribution}' is not usable: {self.reason}"
+        return (
+            f"plug-in '{self.entry_point}' of distribution '{self.distribution}' is not usable: {self.reason}"
+        )
+
+    def concerns(self, kind: str, name: str) -> bool:
+        """Whether a case that asks for this plug-in may mean this one."""
+        if self.name is not None:
+            return (self.kind, self.name) == (kind, name)
+        return name in re.split(r"[.:_]", self.entry_point) or name.replace("-", "_") in self.entry_point
 
 
-@dataclass
 class Registry:
-    """Every usable plug-in by kind and name, and every problem met on the way."""
+    """Every usable plug-in by kind and name, and every problem met on the way.
 
-    plugins: dict[str, dict[str, Registered]] = field(default_factory=lambda: {kind: {} for kind in KINDS})
-    problems: list[Problem] = field(default_factory=list)
+    Two plug-ins of the same kind and name are a problem of both: which one is meant must never be a matter of
+    the order in which they were found.
+    """
+
+    def __init__(self, found: list[Registered], problems: list[Problem]) -> None:
+        self.plugins: dict[str, dict[str, Registered]] = {kind: {} for kind in KINDS}
+        self.problems = list(problems)
+        for one in found:
+            rivals = [other for other in found if (other.kind, other.name) == (one.kind, one.name)]
+            if len(rivals) == 1:
+                self.plugins[one.kind][one.name] = one
+            else:
+                origins = " and ".join(f"'{r.entry_point}' of '{r.distribution}'" for r in rivals)
+                reason = f"{one.kind} '{one.name}' is registered by {origins}; uninstall all but one of them"
+                self.problems.append(Problem(one.distribution, one.entry_point, reason, one.kind, one.name))
 
     def of_kind(self, kind: str) -> dict[str, type[Plugin]]:
         """Names and classes of one kind, in alphabetical order."""
         return {name: found.plugin for name, found in sorted(self.plugins[kind].items())}
 
-    def add(self, found: Registered) -> None:
-        """Register one plug-in. Two of the same kind and name are an error of both, whatever their order."""
-        same_kind = self.plugins[found.kind]
-        clash = same_kind.get(found.name)
-        if clash is not None or found.name in self._refused(found.kind):
-            rivals = [found] if clash is None else [clash, found]
-            for rival in rivals:
-                reason = f"{found.kind} '{found.name}' is registered more than once"
-                self.problems.append(Problem(rival.distribution, rival.entry_point, reason))
-            same_kind.pop(found.name, None)
-            self._refused(found.kind).add(found.name)
-        else:
-            same_kind[found.name] = found
-
-    def _refused(self, kind: str) -> set[str]:
-        return self.__dict__.setdefault("_refused_names", {}).setdefault(kind, set())
-
 
 def discover() -> Registry:
     """Load every entry point of the group ``mpmkit``."""
-    registry = Registry()
-    manager = pluggy.PluginManager(hooks.PROJECT)
-    manager.add_hookspecs(hooks)
+    found: list[Registered] = []
+    problems: list[Problem] = []
     for entry_point in sorted(entry_points(group=hooks.PROJECT), key=_origin):
         distribution, name = _origin(entry_point)
         try:
-            for found in _load(manager, entry_point):
-                registry.add(found)
-        except Exception as error:  # whatever a stranger's module does must stay its own problem
-            reason = f"{type(error).__name__}: {error}"
-            registry.problems.append(Problem(distribution, name, reason))
-    return registry
+            for one in _load(entry_point):
+                (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
+        except (
+            Exception,
+            SystemExit,
+        ) as error:  # whatever a stranger's module does must stay its own problem
+            problems.append(Problem(distribution, name, _reason(error)))
+    return Registry(found, problems)
 
 
 @cache
@@ -93,34 +109,65 @@ def _origin(entry_point: EntryPoint) -> tuple[str, str]:
     return (entry_point.dist.name if entry_point.dist else "unknown", entry_point.name)
 
 
-def _load(manager: pluggy.PluginManager, entry_point: EntryPoint) -> list[Registered]:
+def _reason(error: BaseException) -> str:
+    text = " ".join(str(error).split())  # in one line: it becomes part of a sentence
+    return text if type(error) in (TypeError, ValueError) else f"{type(error).__name__}: {text}"
+
+
+def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
     distribution, entry_name = _origin(entry_point)
     version = entry_point.dist.version if entry_point.dist else "unknown"
-    unique_name = f"{distribution}:{entry_name}"
-    module = entry_point.load()
-    manager.register(module, name=unique_name)
-    try:
-        manager.check_pending()  # a misspelt hook would otherwise stay silent
-        found = []
-        for kind, (hook, contract) in KINDS.items():
-            implementations = [i for i in getattr(manager.hook, hook).get_hookimpls() if i.plugin is module]
-            for implementation in implementations:
-                for plugin in implementation.function():
-                    _check(plugin, kind, contract)
-                    found.append(Registered(kind, plugin, distribution, version, entry_name))
-    except Exception:
-        manager.unregister(name=unique_name)
-        raise
-    if not found:
-        raise ValueError("it registers nothing: no function is marked @hookimpl")
-    return found
+    loaded: list[Registered | Problem] = []
+    for kind, plugin in _provided(entry_point.load()):
+        try:
+            _check(plugin, kind)
+            loaded.append(Registered(kind, plugin, distribution, version, entry_name))
+        except Exception as error:
+            name = getattr(plugin, "name", None)
+            known = name if isinstance(name, str) else None
+            loaded.append(Problem(distribution, entry_name, _reason(error), kind, known))
+    if not loaded:
+        raise ValueError("it registers nothing: no function marked @hookimpl returns a plug-in")
+    return loaded
 
 
-def _check(plugin: object, kind: str, contract: type) -> None:
+def _provided(module: ModuleType) -> Iterator[tuple[str, type[Plugin]]]:
+    """Kinds and classes that the hooks of a module return, not yet looked at."""
+    manager = pluggy.PluginManager(hooks.PROJECT)  # of its own, so that a module that fails leaves no trace
+    manager.add_hookspecs(hooks)
+    kinds = {hook: kind for kind, (hook, _) in KINDS.items()}
+    manager.register(module)
+    for hook in manager.get_hookcallers(module) or []:
+        if hook.name not in kinds:  # a misspelt hook would otherwise stay silent
+            near = difflib.get_close_matches(hook.name, kinds, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"the hooks are {', '.join(kinds)}"
+            raise ValueError(f"it has an unknown hook {hook.name}; {hint}")
+        for implementation in hook.get_hookimpls():
+            plugins = implementation.function()
+            if not isinstance(plugins, list | tuple | set):
+                raise TypeError(f"{hook.name} returned {plugins!r}; it must return a list of classes")
+            for plugin in plugins:
+                yield kinds[hook.name], plugin
+
+
+def _check(plugin: type[Plugin], kind: str) -> None:
+    contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
+    if plugin.api_version != API_VERSION:
+        raise ValueError(f"it is written for API version {plugin.api_version}, this is version {API_VERSION}")
     for attribute in ("name", "citation"):
         if not isinstance(getattr(plugin, attribute, None), str):
             raise TypeError(f"{plugin.__name__} has no '{attribute}'")
-    if plugin.api_version != API_VERSION:
-        raise ValueError(f"it is written for API version {plugin.api_version}, this is version {API_VERSION}")
+    if not NAME.fullmatch(plugin.name):
+        raise ValueError(
+            f"its name is '{plugin.name}'; it must be of lower-case letters, digits and single hyphens"
+        )
+    if inspect.isabstract(plugin):
+        missing = ", ".join(sorted(plugin.__abstractmethods__))
+        raise TypeError(f"{plugin.__name__} lacks {missing}, which a {contract.__name__} must have")
+    for parameter in RESERVED.get(kind, {"name"}) & set(plugin.model_fields):
+        raise ValueError(
+            f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
+        )
+    plugin.model_json_schema()  # a parameter that has none would break the schema of all

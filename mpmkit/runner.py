@@ -88,9 +88,10 @@ def _execute(
     case, particles = simulation.case, len(simulation.particles)
     threads = use_threads(threads, particles)
     recorder = Recorder(simulation, attributes(case, threads), directory)
+    share = f"{case.scheme.time_step.fraction:.3g} of the {simulation.limited_by} limit"
     LOGGER.info(
-        "%s: %d particles, step %.4g s (%.3g of the %s limit), threads: %d",
-        case.name, particles, simulation.time_step, case.scheme.time_step.fraction, simulation.limited_by, threads,
+        "%s: %d particles, step %.4g s (%s), threads: %d",
+        case.name, particles, simulation.time_step, share, threads,
     )  # fmt: skip
     for sentence in simulation.warnings():
         LOGGER.warning("%s", sentence)

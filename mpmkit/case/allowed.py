@@ -1,20 +1,27 @@
-"""What a JSON Schema allows at a place of a case, in words."""
+"""What a JSON Schema allows at one place of a case, in words."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from copy import copy
 from typing import Any
 
 Node = dict[str, Any]
 NOUNS = {"string": "a text", "boolean": "true or false", "number": "a number", "integer": "a whole number"}
 PLURALS = {"string": "texts", "number": "numbers", "integer": "whole numbers", "object": "objects"}
-COUNTS = {"minItems": "at least", "maxItems": "at most"}
-BOUNDS = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
+BOUNDS = {
+    "exclusiveMinimum": "above",
+    "minimum": "at least",
+    "exclusiveMaximum": "below",
+    "maximum": "at most",
+}
+LONGEST = 60
+"""Characters of a value that are shown."""
 
 
 class Place:
-    """The alternatives that a schema has at one place of a document, those which the document excludes left out.
+    """The alternatives that a schema has at one place of a document, without those that the document excludes.
 
     Args:
         schema: the whole JSON Schema.
@@ -24,16 +31,16 @@ class Place:
 
     def __init__(self, schema: Node, document: Any, path: Iterable[str | int] = ()) -> None:
         self._definitions = schema.get("$defs", {})
+        self._document = document
+        self.nodes = self._alternatives(schema)
         self.unit: str | None = None
         """Unit of the quantity that the place is, or is an entry of."""
-        self.nodes = self._alternatives(schema)
         for key in path:
-            self._descend(key, document)
-            document = _entry(document, key)
+            self._descend(key)
 
     def keys(self) -> list[str]:
         """Keys that an object may have here."""
-        return list(dict.fromkeys(key for node in self.nodes for key in node.get("properties", {})))
+        return list(dict.fromkeys(key for node in self._meant() for key in node.get("properties", {})))
 
     def choices(self) -> list[Any]:
         """Values of which one must stand here."""
@@ -50,40 +57,48 @@ class Place:
 
     def describe(self) -> str:
         """The alternatives as the end of "it must be …"."""
-        parts = [] if not self.choices() else [one_of(self.choices())]
-        objects = [node for node in self.nodes if "properties" in node]
+        choices, selector = self.choices(), self.selector()
+        parts = [one_of(choices)] if choices else []
         for node in self.nodes:
-            if not (_constants(node) or node in objects or node.get("type") == "null"):
+            if not (_constants(node) or "properties" in node or node.get("type") == "null"):
                 parts.append(self._describe(node))
-        selector = self.selector()
         if selector is not None:
             key, values = selector
-            which = "the same" if values == self.choices() else one_of(values)
-            parts.append(f"an object whose '{key}' is {which}")
-        elif objects:
-            parts.append(f"an object with {_listed(self.keys(), 'and')}")
-        return ", or ".join(parts)
+            such = f"such a '{key}'" if values == choices else f"a '{key}' that is {one_of(values)}"
+            parts.append(f"an object with {such}")
+        elif any("properties" in node for node in self.nodes):
+            keys = [f"'{key}'" for key in self.keys()]
+            parts.append(f"an object with the key{'s' * (len(keys) > 1)} {_listed(keys, 'and')}")
+        return ", or ".join(parts) or "something else"
 
     def _describe(self, node: Node) -> str:
-        if "allowed" in node:
-            return node["allowed"]
         kind = node.get("type", "")
         unit = f", in {self.unit}" if self.unit not in (None, "1") else ""
-        if kind == "array":
-            kinds = {item.get("type") for item in self._alternatives(node.get("items", {}))}
-            entries = PLURALS.get(kinds.pop(), "entries") if len(kinds) == 1 else "entries"
-            return f"a list of {_count(node)}{entries}{unit}"
-        if kind == "object":
-            return "an object" + unit
+        if "allowed" in node:
+            return node["allowed"]
         if kind in ("number", "integer"):
-            return " and ".join([NOUNS[kind], *_limits(node)]).replace(" and ", " ", 1) + unit
+            return NOUNS[kind] + _limits(node) + unit
+        if kind == "array":
+            return f"a list of {self._entries(node)}{unit}"
+        if kind == "object" and isinstance(node.get("additionalProperties"), dict):
+            value = copy(self)
+            value.nodes = self._alternatives(node["additionalProperties"])
+            return f"an object in which each value is {value.describe()}"
         if "pattern" in node:
             return f"a text that matches {node['pattern']}"
         return NOUNS.get(kind, "something else")
 
-    def _descend(self, key: str | int, document: Any) -> None:
+    def _entries(self, node: Node) -> str:
+        items = self._alternatives(node.get("items", {}))
+        choices = [value for item in items for value in _constants(item)]
+        if choices:
+            return one_of(choices)
+        kinds = {item.get("type") for item in items}
+        return _count(node) + (PLURALS.get(kinds.pop(), "entries") if len(kinds) == 1 else "entries")
+
+    def _descend(self, key: str | int) -> None:
         children = []
-        for node in self._meant(document):
+        for node in self._meant(but=key):
             if isinstance(key, int):
                 children.append(node.get("items"))
             else:
@@ -91,23 +106,43 @@ class Place:
         known = [child for child in children if isinstance(child, dict)]
         self.unit = next((child["unit"] for child in known if "unit" in child), self.unit)
         self.nodes = [node for child in known for node in self._alternatives(child)]
+        try:
+            self._document = self._document[key]
+        except (KeyError, IndexError, TypeError):
+            self._document = None
 
-    def _meant(self, document: Any) -> list[Node]:
-        """The alternatives that the document may mean: those whose constant keys agree with it."""
+    def _meant(self, but: str | int | None = None) -> list[Node]:
+        """The alternatives whose constants agree with the document, apart from the constant at one key."""
+        document = self._document
+        if not isinstance(document, dict):
+            return self.nodes
 
         def agrees(node: Node) -> bool:
-            fixed = {key: _constants(rule) for key, rule in node.get("properties", {}).items()}
-            return all(document[key] in values for key, values in fixed.items() if values and key in document)
+            rules = node.get("properties", {}).items()
+            return all(
+                document.get(key, rule["const"]) == rule["const"]
+                for key, rule in rules
+                if "const" in rule and key != but
+            )
 
-        if isinstance(document, dict):
-            return [node for node in self.nodes if agrees(node)]
-        return self.nodes
+        return [node for node in self.nodes if agrees(node)]
 
     def _alternatives(self, node: Node) -> list[Node]:
         while "$ref" in node:
             node = self._definitions[node["$ref"].rsplit("/", 1)[1]]
         options = node.get("anyOf") or node.get("oneOf")
-        return [node] if options is None else [leaf for option in options for leaf in self._alternatives(option)]
+        return (
+            [node] if options is None else [leaf for option in options for leaf in self._alternatives(option)]
+        )
+
+
+def shown(value: Any) -> str:
+    """A value as it stands in the file, shortened."""
+    try:
+        text = json.dumps(value, ensure_ascii=False)
+    except (TypeError, ValueError, RecursionError):
+        text = repr(value)
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def one_of(values: list[Any]) -> str:
@@ -123,19 +158,15 @@ def _constants(node: Node) -> list[Any]:
     return [node["const"]] if "const" in node else node.get("enum", [])
 
 
-def _entry(document: Any, key: str | int) -> Any:
-    try:
-        return document[key]
-    except (KeyError, IndexError, TypeError):
-        return None
-
-
-def _limits(node: Node) -> list[str]:
-    return [f"{words} {node[key]:g}" for key, words in BOUNDS.items() if key in node]
+def _limits(node: Node) -> str:
+    limits = " and ".join(f"{words} {node[key]:g}" for key, words in BOUNDS.items() if key in node)
+    return f" of {limits}" if limits.startswith("at") else f" {limits}".rstrip()
 
 
 def _count(node: Node) -> str:
     least, most = node.get("minItems"), node.get("maxItems")
     if least is not None and most is not None:
         return f"{least} " if least == most else f"{least} to {most} "
-    return "".join(f"{words} {node[key]} " for key, words in COUNTS.items() if key in node)
+    if least == 1:
+        return "one or more "
+    return f"at least {least} " if least is not None else f"at most {most} " if most is not None else ""

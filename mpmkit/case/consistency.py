@@ -1,4 +1,7 @@
-"""Rules of a case that span several fields. Each is one sentence that names the field, the value, and what is allowed."""
+"""Rules of a case that span several fields.
+
+Each is broken with one sentence that names the field, the value, and what is allowed.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .allowed import shown
+
 if TYPE_CHECKING:
-    from .model import Case
+    from .model import Case, Material
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
+MOST_CELLS = 2**30
+"""Cells along an axis: the first node of a particle is a 32-bit integer."""
+MOST_OUTPUTS = 100_000
+"""Rows of a history, or frames, that a run may be asked for."""
 
 
 def check(case: Case) -> None:
@@ -23,23 +32,23 @@ def check(case: Case) -> None:
         for field, vector in _velocity_vectors(body):
             _check_vector(f"{where}.velocity{field}", vector, case)
         _check_particles_per_cell(f"{where}.particles_per_cell", body.particles_per_cell, case)
-        _check_sound_speed(f"{where}.material.sound_speed", body.material)
+        _check_sound_speed(f"{where}.material.sound_speed", body.material, case)
         try:
             body.shape.check(case.space_)
         except ValueError as error:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
-    if case.output.history_interval is not None and case.output.history_interval > case.until:
-        raise ValueError(
-            f"output.history_interval is {case.output.history_interval:g} s; it must be at most until, {case.until:g} s"
-        )
+    _check_time_step(case)
+    for field in ("history_interval", "frame_interval"):
+        _check_interval(f"output.{field}", getattr(case.output, field), case.until)
 
 
 def _check_vector(field: str, value: list[float] | None, case: Case) -> None:
     axes = case.space_.axes
     if value is not None and len(value) != len(axes):
         raise ValueError(
-            f"{field} is {value}; in the space '{case.space}' it needs {len(axes)} numbers, along {', '.join(axes)}"
+            f"{field} is {shown(value)}; in the space '{case.space}' it needs {len(axes)} numbers, "
+            f"along {', '.join(axes)}"
         )
 
 
@@ -56,23 +65,33 @@ def _check_domain(case: Case) -> None:
     axes, domain, cell = case.space_.axes, case.grid.domain, case.grid.cell_size
     for axis in domain:
         if axis not in axes:
-            raise ValueError(f"grid.domain has an axis '{axis}'; the space '{case.space}' has the axes {', '.join(axes)}")
+            raise ValueError(
+                f"grid.domain has an axis '{axis}'; the space '{case.space}' has the axes {', '.join(axes)}"
+            )
     for axis in axes:
         if axis not in domain:
-            raise ValueError(f"grid.domain lacks the axis '{axis}'; it needs {', '.join(axes)}, each as [lower, upper]")
+            raise ValueError(
+                f"grid.domain lacks the axis '{axis}'; it needs {', '.join(axes)}, each as [lower, upper]"
+            )
         lower, upper = domain[axis]
         if not lower < upper:
-            raise ValueError(f"grid.domain.{axis} is [{lower:g}, {upper:g}]; the lower end must be below the upper one")
+            raise ValueError(
+                f"grid.domain.{axis} is [{lower:g}, {upper:g}]; the lower end must be below the upper one"
+            )
         cells = (upper - lower) / cell
+        if cells > MOST_CELLS:
+            raise ValueError(
+                f"grid.domain.{axis} has {cells:.3g} cells of {cell:g} m; at most {MOST_CELLS:,} are possible"
+            )
         if abs(cells - round(cells)) > WHOLE * max(1.0, cells) or round(cells) < 1:
             raise ValueError(
                 f"grid.domain.{axis} is {cells:.6g} cells long; it must be a whole number of cells of "
                 f"{cell:g} m, such as [{lower:g}, {lower + max(1, round(cells)) * cell:g}]"
             )
-        if cells > 2**30:
-            raise ValueError(f"grid.domain.{axis} has {cells:.3g} cells; at most {2**30} are possible")
     if case.space_.radial and domain["r"][0] != 0:
-        raise ValueError(f"grid.domain.r begins at {domain['r'][0]:g}; it must begin at the axis of symmetry, r = 0")
+        raise ValueError(
+            f"grid.domain.r begins at {domain['r'][0]:g}; it must begin at the axis of symmetry, r = 0"
+        )
 
 
 def _check_faces(case: Case) -> None:
@@ -80,17 +99,22 @@ def _check_faces(case: Case) -> None:
     faces = case.grid.faces
     for name in faces:
         if name not in names:
-            raise ValueError(f"grid.faces has '{name}'; the faces of the space '{case.space}' are {', '.join(names)}")
+            raise ValueError(
+                f"grid.faces has '{name}'; the faces of the space '{case.space}' are {', '.join(names)}"
+            )
     for axis in case.space_.axes:
         pair = [faces.get(f"{axis}_{side}") for side in ("min", "max")]
         if "periodic" in pair and pair[0] != pair[1]:
-            raise ValueError(f"grid.faces: {axis}_min and {axis}_max must both be 'periodic' if one of them is")
+            raise ValueError(
+                f"grid.faces: {axis}_min and {axis}_max must both be 'periodic' if one of them is"
+            )
     if case.space_.radial:
         if "periodic" in (faces.get("r_min"), faces.get("r_max")):
             raise ValueError("grid.faces: the radial axis cannot be 'periodic'")
         if faces.get("r_min", "symmetry") != "symmetry":
             raise ValueError(
-                f"grid.faces.r_min is '{faces['r_min']}'; it is the axis of symmetry, leave it out or say 'symmetry'"
+                f"grid.faces.r_min is {shown(faces['r_min'])}; it is the axis of symmetry, so that it must be "
+                '"symmetry" or left out'
             )
 
 
@@ -106,14 +130,45 @@ def _check_particles_per_cell(field: str, value: int | list[int] | None, case: C
         )
 
 
-def _check_sound_speed(field: str, material) -> None:
-    if material.constitutive_law.uses_equation_of_state:
-        if material.sound_speed is None:
+def _check_sound_speed(field: str, material: Material, case: Case) -> None:
+    if not material.constitutive_law.uses_equation_of_state:
+        if material.sound_speed is not None:
             raise ValueError(
-                f'{field} is missing; the law \'{material.law}\' needs it, in m/s or as {{"factor": 10}} for 10 √(2 g h)'
+                f"{field} is given, but the law '{material.law}' has a pressure of its own; leave it out"
             )
-    elif material.sound_speed is not None:
-        raise ValueError(f"{field} is given, but the law '{material.law}' has a pressure of its own; leave it out")
+    elif material.sound_speed is None:
+        raise ValueError(
+            f"{field} is missing; the law '{material.law}' needs it, in m/s or as "
+            '{"factor": 10} for 10 √(2 g h)'
+        )
+    elif not isinstance(material.sound_speed, float) and not case.gravity_vector.any():
+        raise ValueError(
+            f"{field} is a factor of √(2 g h), but gravity is {case.gravity}; give the speed itself, in m/s"
+        )
+
+
+def _check_time_step(case: Case) -> None:
+    """Something must limit the step: the waves of the materials, or else their viscosity."""
+    ignored = case.scheme.time_step.ignore
+    laws = [body.material.constitutive_law for body in case.bodies]
+    viscous = any(law.largest_viscosity(1.0) > 0 for law in laws)
+    if "acoustic" in ignored and ("viscous" in ignored or not viscous):
+        raise ValueError(
+            f"scheme.time_step.ignore is {shown(ignored)}, which leaves nothing to limit the step of a scene "
+            "at rest; it must spare the acoustic limit"
+        )
+
+
+def _check_interval(field: str, interval: float | None, until: float) -> None:
+    if interval is None:
+        return
+    if interval > until:
+        raise ValueError(f"{field} is {interval:g} s; it must be at most until, {until:g} s")
+    if until / interval > MOST_OUTPUTS:
+        raise ValueError(
+            f"{field} is {interval:g} s; it must be at least {until / MOST_OUTPUTS:g} s, "
+            f"a {MOST_OUTPUTS:,}th of until"
+        )
 
 
 def _check_inside(where: str, body, case: Case) -> None:
@@ -128,10 +183,8 @@ def _check_inside(where: str, body, case: Case) -> None:
             cut = case.grid.faces.get(f"{axis}_{side}") == "symmetry"
             if beyond and not cut:
                 raise ValueError(
-                    f"{where}.shape reaches {axis} = {end:g} m, outside the grid, whose domain along {axis} "
-                    f"is [{low:g}, {high:g}]; only a face with 'symmetry' may cut a body"
+                    f"{where}.shape reaches {axis} = {end:.9g} m, outside the grid, whose domain "
+                    f"along {axis} is [{low:.9g}, {high:.9g}] m; only a face with 'symmetry' may cut a body"
                 )
         if np.isclose(lower[a], upper[a], rtol=0, atol=0):
             raise ValueError(f"{where}.shape has no extent along {axis}")
-
-

@@ -12,7 +12,8 @@ from pydantic import ValidationError
 
 from ..errors import CaseError
 from ..registry import Registry, installed
-from .messages import explain, shown
+from .allowed import shown
+from .messages import explain
 from .model import Case, case_model
 from .overrides import apply_overrides
 from .strict_json import decode

@@ -1,7 +1,8 @@
 """From pydantic's errors to one sentence a person can act on: the field, the value, and what is allowed.
 
-Pydantic only says where something is wrong. What is allowed there is read from the JSON Schema of the case, so
-that a third party's parameters are explained as well as the case's own and none of pydantic's wording gets out.
+Pydantic only says where something is wrong. What is allowed there is read from the JSON Schema of the case,
+so that a third party's parameters are explained as well as the case's own, and none of pydantic's wording
+gets out.
 """
 
 from __future__ import annotations
@@ -15,10 +16,8 @@ from pydantic_core import core_schema
 
 from ..contracts import KINDS
 from ..registry import Registry
-from .allowed import Place, one_of
+from .allowed import LONGEST, Place, one_of, shown
 
-LONGEST = 60
-"""Characters of a value that are shown."""
 PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
 """Kinds of error whose text is pydantic's; the others carry the sentence of a validator."""
 TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
@@ -41,20 +40,15 @@ def explain(error: ValidationError, data: Any, model: type[BaseModel], registry:
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
     # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
-    true_names = {(*c.path[:-1], _nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown}
-    others = [c for c in complaints if c not in unknown and not (c.kind == "missing" and c.path in true_names)]
+    true_names = {
+        (*c.path[:-1], _nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown
+    }
+    others = [
+        c for c in complaints if c not in unknown and not (c.kind == "missing" and c.path in true_names)
+    ]
     first, *rest = unknown + others
     more = f" (and {len(rest)} more)" if rest else ""
     return " ".join((_sentence(first, data, schema, registry) + more).split())
-
-
-def shown(value: Any) -> str:
-    """A value as it stands in the file, shortened."""
-    try:
-        text = json.dumps(value, ensure_ascii=False)
-    except (TypeError, ValueError, RecursionError):
-        text = repr(value)
-    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def _complaint(item: Any, data: Any) -> Complaint:
@@ -113,7 +107,7 @@ def _field(path: Path) -> str:
 def _unknown_key(path: Path, allowed: list[str]) -> str:
     near = _nearest(path[-1], allowed)
     hint = f"it may have {', '.join(allowed)}" if near is None else f"did you mean '{near}'?"
-    return f"{_field(path[:-1])} has an unknown key {shown(path[-1])}; {hint}"
+    return f"{_field(path[:-1])} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
 
 
 def _nearest(word: Any, allowed: list[Any]) -> str | None:
@@ -125,11 +119,15 @@ def _nearest(word: Any, allowed: list[Any]) -> str | None:
 
 
 def _unusable(path: Path, name: Any, registry: Registry) -> str:
-    """Of the plug-ins that could not be loaded, those that may have been meant: by name, or else all of them."""
-    kinds = [key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))]
+    """Of the plug-ins that could not be loaded, those that may have been meant, or else all of them."""
+    kinds = [
+        key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
+    ]
     if not kinds or not registry.problems:
         return ""
-    meant = [problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)]
+    meant = [
+        problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)
+    ]
     if meant:
         return "".join(f"; {problem}" for problem in meant)
     names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)

@@ -111,8 +111,12 @@ def _velocity_tag(value: Any) -> str:
 
 
 InitialVelocity = Annotated[
-    Annotated[list[float], Tag("uniform")] | Annotated[SineVelocity, Tag("sine")], Discriminator(_velocity_tag)
+    Annotated[list[float], Tag("uniform")] | Annotated[SineVelocity, Tag("sine")],
+    Discriminator(_velocity_tag),
 ]
+
+
+ParticleCount = Annotated[int, Field(gt=0, le=1000)]
 
 
 class Body(Model):
@@ -120,7 +124,7 @@ class Body(Model):
 
     shape: AnyShape
     material: Material
-    particles_per_cell: Annotated[int, Field(gt=0)] | list[Annotated[int, Field(gt=0)]] | None = Field(
+    particles_per_cell: ParticleCount | list[ParticleCount] | None = Field(
         default=None,
         description="particles in a full cell (a square or cubic number), or their number along each axis; "
         "2 along each axis unless told",
@@ -153,7 +157,13 @@ class Case(Model):
     """A whole scene."""
 
     name: str = Field(
-        default="case", pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100, description="name of its run directory"
+        default="case",
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
+        max_length=100,
+        description="name of its run directory",
+        json_schema_extra={
+            "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
+        },
     )
     description: str = ""
     space: Literal["3d", "plane-strain", "axisymmetric"]
@@ -203,19 +213,25 @@ class Case(Model):
         return self
 
 
-def _choice(plugins: dict[str, type], default: str | None) -> tuple[Any, Any]:
-    """Annotation and default of a field that holds one of several plug-ins, told apart by name."""
+def _one_of(members: dict[str, type], key: str) -> Any:
+    """Annotation of a field that holds one of several models, told apart by the constant at ``key``."""
 
     def tag(value: Any) -> Any:
         if isinstance(value, dict):
-            return value.get("name")
-        return value if isinstance(value, str) else getattr(value, "name", None)
+            return value.get(key)
+        return value if isinstance(value, str) else getattr(value, key, None)
 
-    members = [Annotated[cls, Tag(name)] for name, cls in plugins.items()]
-    annotation = Annotated[reduce(or_, members), Discriminator(tag)]  # type: ignore[arg-type]
-    if default in plugins:
-        return annotation, Field(default=default, validate_default=True)
-    return annotation, ...
+    if not members:  # every one of them is broken or refused: only a case that is read fails of it
+        return Literal["none is installed"]
+    return Annotated[
+        reduce(or_, [Annotated[cls, Tag(name)] for name, cls in members.items()]), Discriminator(tag)
+    ]
+
+
+def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
+    """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
+    preset = Field(default=default, validate_default=True) if default in plugins else ...
+    return _one_of(plugins, "name"), preset
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -224,7 +240,9 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
     def constitutive_law(self: Material) -> ConstitutiveLaw:
         return law.model_validate({name: getattr(self, name) for name in law.model_fields})
 
-    base = type("Material", (Material,), {"constitutive_law": property(constitutive_law), "__module__": __name__})
+    base = type(
+        "Material", (Material,), {"constitutive_law": property(constitutive_law), "__module__": __name__}
+    )
     return create_model(
         f"Material_{law.__name__}",
         __base__=base,
@@ -237,9 +255,8 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
 
 def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
-    laws = [_material_model(law, registry) for law in registry.of_kind("law").values()]  # type: ignore[arg-type]
-    material = Annotated[reduce(or_, laws), Field(discriminator="law")]  # type: ignore[arg-type]
-    body = create_model("Body", __base__=Body, material=(material, ...))
+    laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
+    body = create_model("Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of(laws, "law"), ...))
     scheme = create_model(
         "Scheme",
         __base__=Scheme,

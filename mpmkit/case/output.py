@@ -21,7 +21,9 @@ class OutputSettings(BaseModel):
         "s", "time between frames; a 20th of the run unless told", gt=0, default=None
     )
     snapshot_times: list[Annotated[float, Field(ge=0)]] = quantity(
-        "s", "times whose frames the report draws; the last state is always drawn", default=[0.0, 0.1, 0.2, 0.5]
+        "s",
+        "times whose frames the report draws; the last state is always drawn",
+        default=[0.0, 0.1, 0.2, 0.5],
     )
     particle_history: list[Literal["position", "velocity", "stress", "pressure", "volume_ratio"]] = Field(
         default=[], description="particle fields kept in every row of the history, by particle number"

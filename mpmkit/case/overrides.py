@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..errors import CaseError
-from .messages import shown
+from .allowed import shown
 from .strict_json import decode
 
 DEEPEST = 20
@@ -55,7 +55,7 @@ def _assign(data: dict[str, Any], keys: list[str], value: Any) -> None:
         below = here[index] if isinstance(here, list) else here.get(index)
         if below is None:
             below = here[index] = {}
-        elif isinstance(below, str) and (depth == 1 and keys[0] == "scheme" or key == "equation_of_state"):
+        elif isinstance(below, str) and ((depth == 1 and keys[0] == "scheme") or key == "equation_of_state"):
             below = here[index] = {"name": below}
         here = below
 

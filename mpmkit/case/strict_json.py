@@ -45,5 +45,7 @@ def _finite(digits: str) -> float:
 
 def _integer(digits: str) -> int:
     if len(digits) > MOST_DIGITS:
-        raise ValueError(f"{digits[:20]}… has {len(digits)} digits; a number of a case has at most {MOST_DIGITS}")
+        raise ValueError(
+            f"{digits[:20]}… has {len(digits)} digits; a number of a case has at most {MOST_DIGITS}"
+        )
     return int(digits)

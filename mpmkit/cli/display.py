@@ -71,7 +71,9 @@ class TerminalHandler(logging.Handler):
         if record.levelno < logging.ERROR:
             style = "yellow" if record.levelno >= logging.WARNING else None
             prefix = "warning: " if record.levelno >= logging.WARNING else ""
-            console.print(prefix + record.getMessage(), style=style, soft_wrap=True, highlight=False, markup=False)
+            console.print(
+                prefix + record.getMessage(), style=style, soft_wrap=True, highlight=False, markup=False
+            )
 
 
 def show_log(level: int) -> None:
@@ -99,6 +101,8 @@ def show_summary(directory: Path) -> None:
         ("particle_steps_per_second", "particle-steps a second", 1e-6, "million", 2),
     ):
         value = summary[key]
-        table.add_row(label, "never" if value is None else f"{value * scale:,.{digits}f}", "" if value is None else unit)
+        table.add_row(
+            label, "never" if value is None else f"{value * scale:,.{digits}f}", "" if value is None else unit
+        )
     console.print(table)
     console.print(f"results in {directory}", highlight=False)

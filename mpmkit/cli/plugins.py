@@ -29,7 +29,8 @@ def command(as_json: bool) -> None:
         for name, entry in sorted(entries.items())
     ]
     problems = [
-        {"distribution": p.distribution, "entry_point": p.entry_point, "reason": p.reason} for p in registry.problems
+        {"distribution": p.distribution, "entry_point": p.entry_point, "reason": p.reason}
+        for p in registry.problems
     ]
     if as_json:
         click.echo(json.dumps({"plugins": found, "problems": problems}, indent=2, ensure_ascii=False))

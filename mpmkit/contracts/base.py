@@ -17,7 +17,9 @@ def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
 
     >>> yield_stress: float = quantity("Pa", "stress below which it does not flow", ge=0)
     """
-    return Field(description=f"{description} [{unit}]".strip(), json_schema_extra={"unit": unit}, **constraints)
+    return Field(
+        description=f"{description} [{unit}]".strip(), json_schema_extra={"unit": unit}, **constraints
+    )
 
 
 class Plugin(BaseModel):
@@ -47,7 +49,9 @@ class Plugin(BaseModel):
         return {"name": self.name, **handler(self)}
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
         body = handler.resolve_ref_schema(handler(schema))
         name = getattr(cls, "name", None)
         if name is None:

@@ -74,7 +74,7 @@ def advance_3d(nodes, strides, lower, base, weight, hoop, dt, flip, position, ve
 
 @kernel()
 def gradient_2d(nodes, strides, lower, base, weight, gradient, hoop, L):
-    """L_ij = Σ v_i ∂N/∂x_j, and L_θθ = Σ v_r N/r where ``hoop`` has columns. Other components stay as they are."""
+    """L_ij = Σ v_i ∂N/∂x_j, and L_θθ = Σ v_r N/r where ``hoop`` has columns; the rest stays as it is."""
     n, support = len(L), weight.shape[2]
     radial = hoop.shape[1] > 0
     for chunk in prange(chunk_count(n)):

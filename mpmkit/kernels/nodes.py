@@ -64,7 +64,7 @@ def _copy_plane(nodes, shape, strides, axis, source, target, first, last, sign):
 
 @njit(cache=True)
 def _parity(face, axis, dim, vectors):
-    """Sign of every slot under reflection at a face: scalars are even, of a vector what the face reverses is odd."""
+    """Sign of every slot under reflection at a face: scalars are even, what the face reverses is odd."""
     sign = np.ones(NODE)
     if vectors and face != PERIODIC:
         for d in range(dim):
@@ -117,7 +117,7 @@ def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
     for a in range(dim):
         for side in range(2):
             code = faces[a, side]
-            if code == OPEN or code == PERIODIC:
+            if code in (OPEN, PERIODIC):
                 continue
             inward, k = 1 - 2 * side, walls[a, side]
             if not 0 <= k < shape[a]:

@@ -22,9 +22,9 @@ def scatter_2d(
 ):  # fmt: skip
     """Add mass and momentum (if ``momentum``) and the force (if ``forces``) of all particles to the nodes.
 
-    f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where ``hoop`` has columns. ``stress``
-    holds the extra stress; the Cauchy stress is that minus ``pressure``. ``slabs[g, s]`` is the first
-    particle of slab s in group g.
+    f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
+    ``hoop`` has columns. ``stress`` holds the extra stress; the Cauchy stress is that minus ``pressure``.
+    ``slabs[g, s]`` is the first particle of slab s in group g.
     """
     support = weight.shape[2]
     radial = hoop.shape[1] > 0

@@ -23,7 +23,7 @@ GHOST = 1
 
 @dataclass
 class Grid:
-    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis lies on the lower face, node -1 is a ghost."""
+    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis is on its lower face, node -1 behind."""
 
     lower: np.ndarray
     cells: np.ndarray

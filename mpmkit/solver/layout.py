@@ -36,7 +36,7 @@ class Layout:
         self._periodic = [a for a in range(grid.dim) if grid.periodic[a]]
 
     def refresh(self) -> int | None:
-        """Sort and move the window if any particle has strayed. Returns a particle that is lost, if any is."""
+        """Sort and move the window if a particle has strayed. Returns a particle that is lost, if any is."""
         position = self.particles.position
         for axis in self._periodic:
             wrap(position, axis, self.grid.extent[axis])

@@ -14,7 +14,9 @@ from .particles import Particles
 class SceneOperations:
     """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
 
-    def __init__(self, scheme: Scheme, grid: Grid, particles: Particles, gravity: np.ndarray, radial: bool) -> None:
+    def __init__(
+        self, scheme: Scheme, grid: Grid, particles: Particles, gravity: np.ndarray, radial: bool
+    ) -> None:
         n, dim, support = len(particles), grid.dim, scheme.shape.support
         self.scheme = scheme
         self.grid = grid
@@ -33,10 +35,10 @@ class SceneOperations:
         self._advance = getattr(gather, f"advance_{self._in_space}")
         self._gradient = getattr(gather, f"gradient_{self._in_space}")
 
-    # --- The frame of a step -------------------------------------------------------------------------------
+    # --- The frame of a step
 
     def begin(self) -> int | None:
-        """Sort if needed and evaluate the shape functions. Returns a particle that left the grid, if any did."""
+        """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
         lost = self.layout.refresh()
         if lost is not None:
             return lost
@@ -51,7 +53,7 @@ class SceneOperations:
         """One step of the chosen order."""
         self.scheme.order.step(self, dt)
 
-    # --- Particles to nodes --------------------------------------------------------------------------------
+    # --- Particles to nodes
 
     def map_to_grid(self, *, forces: bool = True) -> None:
         nodes.clear(self.window.nodes)
@@ -81,12 +83,12 @@ class SceneOperations:
         w = self.window
         return w.shape, w.strides, self.grid.dim, self.grid.faces, w.walls
 
-    # --- Nodes -----------------------------------------------------------------------------------------------
+    # --- Nodes
 
     def solve_momentum(self, dt: float) -> None:
         nodes.solve_momentum(self.window.nodes, *self._faces(), self.grid.friction, dt)
 
-    # --- Nodes to particles ----------------------------------------------------------------------------------
+    # --- Nodes to particles
 
     def map_to_particles(self, dt: float) -> None:
         self.scheme.velocity.map_to_particles(self, dt)
@@ -104,7 +106,7 @@ class SceneOperations:
             self.particles.velocity_gradient,
         )  # fmt: skip
 
-    # --- Particles -------------------------------------------------------------------------------------------
+    # --- Particles
 
     def update_stress(self, dt: float) -> None:
         p = self.particles
@@ -137,7 +139,7 @@ class SceneOperations:
         elif rule == "volume":
             domains.follow_volume(p.volume_ratio, p.initial_half_size, largest, p.half_size)
 
-    # --- Fields in general -----------------------------------------------------------------------------------
+    # --- Fields in general
 
     def particles_to_nodes(self, values: np.ndarray, mass_weighted: bool = False) -> np.ndarray:
         w, p = self.window, self.particles

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case.model import Body, Case
+from ..case.model import Body, Case, Material
 from ..errors import CaseError
 from ..geometry import Sample, sample
 from .particles import Group, Particles
@@ -28,30 +28,32 @@ def kept_box(case: Case) -> tuple[np.ndarray, np.ndarray]:
 
 def make_particles(case: Case) -> Particles:
     """Fill the bodies with particles; bodies of the same material share a group."""
-    lower, _ = kept_box(case)
-    samples = [_sample_body(case, number) for number in range(len(case.bodies))]
-    materials: list = []
+    materials: list[Material] = []
     for body in case.bodies:
         if body.material not in materials:
             materials.append(body.material)
-    order = [i for m in materials for i, body in enumerate(case.bodies) if body.material == m]
+    bodies = [
+        (number, body) for m in materials for number, body in enumerate(case.bodies) if body.material == m
+    ]
+    samples = [_sample_body(case, number) for number, _ in bodies]
+    counts = [len(found.volume) for found in samples]
 
-    position = np.concatenate([samples[i].position for i in order]) - lower
-    volume = np.concatenate([samples[i].volume for i in order])
-    half_size = np.concatenate([samples[i].half_size for i in order])
-    n, dim = position.shape
-    body_of = np.concatenate([np.full(len(samples[i].volume), i, dtype=np.int32) for i in order])
-    density = np.array([body.material.density for body in case.bodies])[body_of]
-    velocity = np.concatenate([_initial_velocity(case.bodies[i], samples[i].position) for i in order])
-    tracks_deformation = case.scheme.shape.particle_domain == "stretch" or any(
-        m.constitutive_law.needs_deformation_gradient for m in materials
-    )
+    lower, _ = kept_box(case)
+    position = np.concatenate([found.position for found in samples])
+    volume = np.concatenate([found.volume for found in samples])
+    half_size = np.concatenate([found.half_size for found in samples])
+    n = len(position)
     particles = Particles(
         number=np.arange(n, dtype=np.int64),
-        body=body_of,
-        position=position,
-        velocity=velocity,
-        mass=density * volume,
+        body=np.repeat(np.array([number for number, _ in bodies], dtype=np.int32), counts),
+        position=position - lower,
+        velocity=np.concatenate(
+            [
+                _initial_velocity(body, found.position)
+                for (_, body), found in zip(bodies, samples, strict=True)
+            ]
+        ),
+        mass=np.repeat([body.material.density for _, body in bodies], counts) * volume,
         initial_volume=volume,
         volume=volume.copy(),
         volume_ratio=np.ones(n),
@@ -60,28 +62,36 @@ def make_particles(case: Case) -> Particles:
         velocity_gradient=np.zeros((n, 3, 3)),
         stress=np.zeros((n, 6)),
         pressure=np.zeros(n),
-        deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation else None,
+        deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
     )
     start = 0
     for material in materials:
-        count = sum(len(samples[i].volume) for i in order if case.bodies[i].material == material)
-        law = material.constitutive_law
-        state = {
+        end = start + sum(c for c, (_, body) in zip(counts, bodies, strict=True) if body.material == material)
+        particles.groups.append(_group(case, material, slice(start, end)))
+        start = end
+    return particles
+
+
+def tracks_deformation(case: Case) -> bool:
+    """Whether the particles of a case carry a deformation gradient."""
+    return case.scheme.shape.particle_domain == "stretch" or any(
+        body.material.constitutive_law.needs_deformation_gradient for body in case.bodies
+    )
+
+
+def _group(case: Case, material: Material, part: slice) -> Group:
+    law, count = material.constitutive_law, part.stop - part.start
+    return Group(
+        law=law,
+        equation_of_state=material.equation_of_state,
+        density=material.density,
+        sound_speed=case.sound_speed(material),
+        part=part,
+        state={
             name: np.full((count, *variable.shape), variable.initial, dtype=float)
             for name, variable in law.state.items()
-        }
-        particles.groups.append(
-            Group(
-                law=law,
-                equation_of_state=material.equation_of_state,
-                density=material.density,
-                sound_speed=case.sound_speed(material),
-                part=slice(start, start + count),
-                state=state,
-            )
-        )
-        start += count
-    return particles
+        },
+    )
 
 
 def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:

@@ -72,7 +72,11 @@ class Simulation:
     def check(self) -> None:
         """Raise GuardStop if the last step has sent a particle out of the grid or to infinity."""
         p = self.particles
-        fine = np.isfinite(p.position).all(axis=1) & np.isfinite(p.velocity).all(axis=1) & np.isfinite(p.pressure)
+        fine = (
+            np.isfinite(p.position).all(axis=1)
+            & np.isfinite(p.velocity).all(axis=1)
+            & np.isfinite(p.pressure)
+        )
         fine &= np.isfinite(p.stress).all(axis=1)
         if not fine.all():
             self._stop(int(np.argmin(fine)))

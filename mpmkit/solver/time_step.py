@@ -9,7 +9,7 @@ from ..case.model import TimeStep
 from .particles import Group
 
 VISCOUS_NUMBER = 0.375
-"""Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hat functions, in any dimension."""
+"""Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Casson's law as a plug-in of mpmkit."""
 
 import numpy as np
+
 from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
 
 

@@ -17,8 +17,15 @@ from mpmkit.registry import installed
 
 REGISTRY = installed()
 SCHEMES = list(product(*(REGISTRY.of_kind(kind) for kind in ("shape", "order", "velocity"))))
+VELOCITIES = list(REGISTRY.of_kind("velocity"))
+PAIRS = list(product(REGISTRY.of_kind("shape"), REGISTRY.of_kind("order")))
+FEWER_SCHEMES = [(*pair, VELOCITIES[i % len(VELOCITIES)]) for i, pair in enumerate(PAIRS)]
+"""Every shape function with every order, and every velocity update with some of them."""
 SPACES = ("plane-strain", "axisymmetric", "3d")
 DX = 0.0625
+SMALL_STEP = 0.1
+"""Fraction of the critical step at which even USL with linear shape functions survives its nearly empty nodes
+long enough: a particle that enters a cell at speed v leaves the unstable range in (fraction) c / v steps."""
 RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
 SYRUP = {"law": "newtonian", "density": 1200.0, "viscosity": 5.0, "sound_speed": 10.0}
 
@@ -88,7 +95,7 @@ def by_number(simulation, field="position"):
 
 
 def block(space, corner=3, size=4):
-    """Corners of a block in cells, and a domain with room around it; a cylinder on the axis if axisymmetric."""
+    """Corners of a block in cells, and a domain with room around it; a cylinder if axisymmetric."""
     dim = 3 if space == "3d" else 2
     lower, upper = [corner] * dim, [corner + size] * dim
     if space == "axisymmetric":
@@ -104,10 +111,10 @@ def block(space, corner=3, size=4):
 def test_mass_and_momentum_are_kept_by_a_deforming_body(space, scheme):
     """No wall, no gravity: Σ m and Σ m v to rounding; of an axisymmetric body the axial component."""
     lower, upper, domain = block(space)
-    velocity = [0.7] * len(lower)
+    velocity = [5.0, 4.0, 3.0][: len(lower)]
     if space == "axisymmetric":
         velocity[0] = 0.0
-    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain)
+    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain, fraction=SMALL_STEP)
     shake(simulation)
     start = simulation.measures(simulation.particles)
     scale = float(np.sum(simulation.particles.mass * np.linalg.norm(simulation.particles.velocity, axis=1)))
@@ -116,7 +123,7 @@ def test_mass_and_momentum_are_kept_by_a_deforming_body(space, scheme):
         nodal_mass = simulation.operations.window.nodes[:, 0].sum()
         assert nodal_mass == pytest.approx(start["total_mass"], rel=1e-13)
     end = simulation.measures(simulation.particles)
-    assert end["strain_energy"] > 1e-3 * start["kinetic_energy"]  # it did deform
+    assert end["strain_energy"] > 1e-2  # J: it did deform
     assert end["total_mass"] == start["total_mass"]
     kept = slice(1, None) if space == "axisymmetric" else slice(None)
     np.testing.assert_allclose(end["momentum"][kept], start["momentum"][kept], rtol=0, atol=1e-12 * scale)
@@ -128,10 +135,12 @@ def test_free_fall_is_a_parabola(space, scheme):
     """The centre of mass of a deforming body falls as x0 + Σ dt v, v = v0 + Σ dt g, to rounding."""
     lower, upper, domain = block(space)
     dim = len(lower)
-    velocity, gravity = [0.3] * dim, [0.8] * (dim - 1) + [-9.81]
+    velocity, gravity = [3.0] * dim, [0.8] * (dim - 1) + [-9.81]
     if space == "axisymmetric":
         velocity[0] = gravity[0] = 0.0
-    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain, gravity=gravity)
+    simulation = simulate(
+        space, scheme, [(lower, upper, RUBBER, velocity)], domain, gravity=gravity, fraction=SMALL_STEP
+    )
     shake(simulation)
     p = simulation.particles
     v = p.mass @ p.velocity / p.mass.sum()
@@ -174,22 +183,23 @@ def run_with_threads(threads, make, steps):
     return simulation.particles.arrays()
 
 
-def assert_same_bits(make, steps=60):
+def assert_same_bits(make, steps=40):
     one, two = (run_with_threads(threads, make, steps) for threads in (1, 2))
     for name in one:
         np.testing.assert_array_equal(one[name], two[name], err_msg=name)
 
 
-@each_scheme
+@pytest.mark.parametrize("scheme", FEWER_SCHEMES, ids="-".join)
 @each_space
 def test_thread_count_changes_no_bit(space, scheme):
     dim = 3 if space == "3d" else 2
     lower, upper = [3, 3, 3][:dim], [[16, 9], [16, 5, 6]][dim - 2]
-    domain = [[0, 24], [0, 14], [0, 14]][:dim]
-    velocity = [3.0, 0.5, 0.5][:dim]
+    domain = [[0, 24], [0, 20], [0, 20]][:dim]
+    velocity = [6.0, 6.0, 3.0][:dim]
     if space == "axisymmetric":
-        lower[0], velocity = 0, [0.0, -3.0]
-    assert_same_bits(lambda: simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain))
+        lower[0], velocity = 0, [0.0, 10.0]
+    bodies = [(lower, upper, RUBBER, velocity)]
+    assert_same_bits(lambda: simulate(space, scheme, bodies, domain, fraction=SMALL_STEP))
 
 
 @pytest.mark.parametrize("volumetric", REGISTRY.of_kind("volumetric"))
@@ -198,18 +208,24 @@ def test_thread_count_changes_no_bit_of_a_fluid(space, volumetric):
     dim = 3 if space == "3d" else 2
     lower, upper = [0, 0, 0][:dim], [[16, 9], [16, 5, 6]][dim - 2]
     domain = [[0, 30], [0, 14], [0, 14]][:dim]
-    faces = {"z_min": "stick", "x_min": "symmetry"} if space != "axisymmetric" else {"z_min": "stick"}
+    faces = {"plane-strain": {"x_min": "symmetry"}, "3d": {"x_min": "symmetry", "y_min": "slip"}}
     bodies = [(lower, upper, SYRUP, None)]
     gravity = [0.0] * (dim - 1) + [-9.81]
 
     def make():
         simulation = simulate(
-            space, ("cpgimp", "usl", "flip"), bodies, domain, faces, gravity, volumetric=volumetric
+            space,
+            ("cpgimp", "usl", "flip"),
+            bodies,
+            domain,
+            {"z_min": "stick", **faces.get(space, {})},
+            gravity,
+            volumetric=volumetric,
         )
-        simulation.particles.velocity[:, 0] += 2.0 * simulation.particles.position[:, 0]
+        simulation.particles.velocity[:, 0] += 6.0 * simulation.particles.position[:, 0]
         return simulation
 
-    assert_same_bits(make, steps=80)
+    assert_same_bits(make)
 
 
 # --- Mirrors ------------------------------------------------------------------------------------------------
@@ -297,8 +313,8 @@ def test_motion_does_not_depend_on_the_place(scheme):
     far = 1003
     found = []
     for corner in (3, far):
-        box = ([corner, corner], [corner + 6, corner + 4], RUBBER, [4.0, 1.0])
-        simulation = simulate("plane-strain", scheme, [box], [[0, 2000], [0, 2000]])
+        box = ([corner, corner], [corner + 6, corner + 4], RUBBER, [8.0, 6.0])
+        simulation = simulate("plane-strain", scheme, [box], [[0, 2000], [0, 2000]], fraction=SMALL_STEP)
         shake(simulation)
         for _ in range(60):
             simulation.advance()
@@ -315,7 +331,7 @@ def test_periodic_faces_wrap_the_unwrapped_motion(scheme, axis, direction):
     velocity[axis] = 20.0 * direction
     name = "xz"[axis]
     lower, upper = [20, 20], [24, 23]
-    unwrapped = simulate("plane-strain", scheme, [(lower, upper, RUBBER, velocity)], [[0, 44], [0, 44]])
+    unwrapped = simulate("plane-strain", scheme, [(lower, upper, RUBBER, velocity)], [[-12, 56], [-12, 56]])
     domain = [[12, 32], [12, 32]]
     domain[axis] = [18, 18 + period]
     faces = {f"{name}_min": "periodic", f"{name}_max": "periodic"}
@@ -324,7 +340,7 @@ def test_periodic_faces_wrap_the_unwrapped_motion(scheme, axis, direction):
         shake(simulation)
         for _ in range(60):
             simulation.advance()
-    moved = by_number(unwrapped) - (by_number(wrapped) + wrapped.grid.lower)
+    moved = by_number(unwrapped) + unwrapped.grid.lower - by_number(wrapped) - wrapped.grid.lower
     turns = moved[:, axis] / (period * DX)
     assert np.abs(turns).max() >= 1  # it did go round
     np.testing.assert_allclose(turns, np.rint(turns), rtol=0, atol=1e-9)
@@ -359,10 +375,10 @@ def test_two_materials_meet(space, scheme):
     dim = 3 if space == "3d" else 2
     side = [0 if space == "axisymmetric" else 3] * (dim - 1)
     across = [3 if space == "axisymmetric" else 6] * (dim - 1)
-    drop = ([*side, 7], [*across, 10], SYRUP, [0.0] * (dim - 1) + [-1.0])
-    rubber = ([*side, 4], [*across, 7], RUBBER, [0.0] * (dim - 1) + [1.0])
+    drop = ([*side, 7], [*across, 10], SYRUP, [0.0] * (dim - 1) + [-3.0])
+    rubber = ([*side, 4], [*across, 7], RUBBER, [0.0] * (dim - 1) + [3.0])
     domain = [[0, 9]] * (dim - 1) + [[0, 14]]
-    simulation = simulate(space, scheme, [drop, rubber], domain, fraction=0.2)
+    simulation = simulate(space, scheme, [drop, rubber], domain, fraction=SMALL_STEP / 2)
     p = simulation.particles
     names = by_number(simulation, "body").copy()
     momentum = (p.mass @ p.velocity)[-1]
@@ -380,5 +396,5 @@ def test_two_materials_meet(space, scheme):
     assert (p.pressure[solid] == 0).all()  # the law of rubber has a stress of its own
     assert p.pressure[drops].max() > 0.0
     # The collision slows both down: what the drop loses the block takes up.
-    assert p.velocity[drops, -1].mean() > -0.95
-    assert p.velocity[solid, -1].mean() < 0.95
+    assert p.velocity[drops, -1].mean() > -2.95
+    assert p.velocity[solid, -1].mean() < 2.95

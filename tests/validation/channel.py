@@ -133,7 +133,12 @@ class Channel:
             self._settle()
 
     def _settle(self) -> None:
-        """Put the film under its own weight: J p = rho g (H - z) holds every node, for p = rho c² (1/J - 1)."""
+        """Put the film under its own weight, so that it need not sink into it, slowly, as a stiff fluid does.
+
+        J p = rho g (H - z) holds every node, and p = rho c² (1/J - 1) then gives J. The layers themselves stay
+        where they are, g H/c² too far apart at the wall: the shear stress that holds the film, and what it has
+        above the yield stress, are wrong by so much of G H. With c = 50 m/s and H = 50 mm that is 2e-4 G H.
+        """
         p = self.particles
         weight = self.normal_gravity * (self.height - p.position[:, 1])
         p.volume_ratio[:] = 1 - weight / self.sound_speed**2
@@ -143,7 +148,7 @@ class Channel:
     # --- Changes while it flows ------------------------------------------------------------------------------
 
     def start_with(self, speed: np.ndarray) -> None:
-        """Give the particles this velocity along x, and the stress that belongs to it."""
+        """Give the particles this velocity along x."""
         self.particles.velocity[:, 0] = speed
 
     def sharpen(self, m: float) -> None:

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
-from mpmkit.contracts import Motion
 from mpmkit_casson import Casson
+
+from mpmkit.contracts import Motion
 
 
 @pytest.mark.parametrize("rate", [0.5, 5.0, 50.0])

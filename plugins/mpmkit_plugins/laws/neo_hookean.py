@@ -35,7 +35,9 @@ class NeoHookean(ConstitutiveLaw):
     def update_stress(
         self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        _cauchy_stress(motion.deformation_gradient, motion.volume_ratio, self.shear_modulus, self.lame, stress)
+        _cauchy_stress(
+            motion.deformation_gradient, motion.volume_ratio, self.shear_modulus, self.lame, stress
+        )
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         return float(np.sqrt((self.lame + 2 * self.shear_modulus) / density))
@@ -57,7 +59,9 @@ def _cauchy_stress(F, J, G, lame, stress):
                 squared = F[p, i, 0] ** 2 + F[p, i, 1] ** 2 + F[p, i, 2] ** 2
                 stress[p, i] = a * squared + isotropic
             for k, (i, j) in enumerate(((1, 2), (0, 2), (0, 1))):
-                stress[p, 3 + k] = a * (F[p, i, 0] * F[p, j, 0] + F[p, i, 1] * F[p, j, 1] + F[p, i, 2] * F[p, j, 2])
+                stress[p, 3 + k] = a * (
+                    F[p, i, 0] * F[p, j, 0] + F[p, i, 1] * F[p, j, 1] + F[p, i, 2] * F[p, j, 2]
+                )
 
 
 @hookimpl

@@ -14,18 +14,19 @@ class CpGIMP(ShapeFunction):
     """N̄ = 1/(2 l_p) ∫ N dx and its gradient over [x_p - l_p, x_p + l_p]: eqs. 2 and 3 of Ferreira et al.
 
     The averages are exact. A box is at most one cell wide and so covers at most two cells, three nodes.
-    In an axisymmetric scene the radial averages are weighted with r, N̄ = ∫ N r dr / ∫ r dr (Nairn & Guilkey).
+    In an axisymmetric scene the radial ones are weighted with r, N̄ = ∫ N r dr / ∫ r dr (Nairn & Guilkey).
     """
 
     name = "cpgimp"
     citation = (
-        "Bardenhagen & Kober, CMES 5 (2004) 477-496; Nairn & Guilkey, Int. J. Numer. Meth. Eng. 101 (2015) 127-147"
+        "Bardenhagen & Kober, CMES 5 (2004) 477-496; "
+        "Nairn & Guilkey, Int. J. Numer. Meth. Eng. 101 (2015) 127-147"
     )
     support = 3
 
     domain: Literal["fixed", "stretch", "volume"] = Field(
         default="fixed",
-        description="how the particle's box follows the deformation: not at all (uGIMP), by the symmetric stretch "
+        description="how the particle's box follows the deformation: not at all (uGIMP), by the stretch "
         "U_ii, or as the cube root of the volume ratio (square root in two dimensions)",
     )
 
