@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-ROUNDING = 1 + 1e-12
-"""A multiple of the interval that misses the end by rounding is still within it."""
+AT_THE_END = 1 - 1e-9
+"""Part of the run after which a time counts as its end."""
 
 
 class Schedule:
-    """Times that are waited for, in order, from 0 to ``until``, s."""
+    """Times that are waited for, in order, from 0 to before ``until``, s; the end needs no waiting for."""
 
     def __init__(self, interval: float, until: float, extra: Iterable[float] = ()) -> None:
-        regular = (k * interval for k in range(int(until / interval * ROUNDING) + 1))
-        self._times = sorted({t for t in (*regular, *extra) if t <= until * ROUNDING})
+        regular = (k * interval for k in range(int(until / interval) + 1))
+        self._times = sorted({t for t in (*regular, *extra) if t < until * AT_THE_END})
         self._next = 0
 
     def passed(self, now: float) -> bool:

@@ -46,7 +46,10 @@ class Simulation:
         """Recompute the limits, and with them the step."""
         speed = largest_speed(self.particles.velocity, self._scratch)
         self.limits = limits(self.particles.groups, self.grid.cell_size, float(speed))
-        self.time_step, self.limited_by = choose_step(self.case.scheme.time_step, self.limits)
+        scheme = self.case.scheme
+        self.time_step, self.limited_by = choose_step(
+            scheme.time_step, self.limits, scheme.order.viscous_fraction
+        )
 
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""

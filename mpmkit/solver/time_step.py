@@ -23,14 +23,6 @@ class Limits:
     def as_dict(self) -> dict[str, float]:
         return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
 
-    def binding(self, ignore: list[str]) -> tuple[str, float]:
-        """The smallest limit that is not ignored, and its name."""
-        kept = {name: limit for name, limit in self.as_dict().items() if name not in ignore}
-        if not kept:
-            return "none", math.inf
-        name = min(kept, key=kept.__getitem__)
-        return name, kept[name]
-
 
 def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limits:
     """Critical steps of a scene.
@@ -55,10 +47,17 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
     return Limits(acoustic, viscous, _quotient(cell_size, largest_speed))
 
 
-def choose_step(settings: TimeStep, found: Limits) -> tuple[float, str]:
-    """The step, s, and the name of the limit that it is a fraction of."""
-    name, critical = found.binding(list(settings.ignore))
-    return settings.fraction * critical, name
+def choose_step(settings: TimeStep, found: Limits, viscous_fraction: float) -> tuple[float, str]:
+    """The step, s, and the name of the limit that sets it.
+
+    It is ``settings.fraction`` of the smallest limit that is not ignored, and no more than
+    ``viscous_fraction`` of the viscous one, which is what the update order bears.
+    """
+    steps = {name: settings.fraction * limit for name, limit in found.as_dict().items()}
+    steps["viscous"] = min(settings.fraction, viscous_fraction) * found.viscous
+    kept = {name: step for name, step in steps.items() if name not in settings.ignore}
+    name = min(kept, key=kept.__getitem__, default="none")
+    return kept.get(name, math.inf), name
 
 
 def warnings(settings: TimeStep, found: Limits, step: float) -> list[str]:
