@@ -17,8 +17,8 @@ from .solver.scene import kept_box, particles_along_axes
 
 DOUBLE = 8
 INDEX = 4
-SORTING = 9
-"""Doubles a particle that a sort holds for a moment: keys, order, cells, and a copy of the widest array."""
+SORTING = 13
+"""Doubles a particle that a sort holds for a moment: a copy of the widest array, keys, order and cells."""
 MARGIN = 6
 """Nodes along an axis by which the window is wider than the cells of the material."""
 
@@ -92,11 +92,11 @@ def require_memory(case: Case) -> None:
     particles = expected_particles(case)
     needed, there = expected_bytes(case, particles), psutil.virtual_memory().total
     if needed > there:
+        fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
             f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)}; use larger cells, "
-            f"fewer particles a cell, {'fewer rows of particle_history, ' * bool(case.output.particle_history)}"
-            "or a symmetry plane"
+            f"fewer particles a cell, {fewer_rows}or a symmetry plane"
         )
 
 

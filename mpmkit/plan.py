@@ -8,6 +8,7 @@ from statistics import median
 from typing import Any
 
 from .case.model import Case
+from .errors import GuardStop
 from .memory import expected_bytes, require_memory
 from .solver.simulation import Simulation
 from .threads import use_threads
@@ -33,28 +34,39 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     simulation = Simulation(case)
     particles = len(simulation.particles)
     use_threads(threads, particles)
-    limits, step = simulation.limits, simulation.time_step
+    # What follows is of the scene at rest: the trial below moves it on.
+    limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
+    warnings = simulation.warnings()
     steps = math.ceil(case.until / step)
-    result = {
+    seconds_per_step, stopped = _trial(simulation)
+    return {
         "particles": particles,
         "nodes": list(simulation.grid.nodes),
         "steps": steps,
         "time_step": step,
         "limits": {name: limit if math.isfinite(limit) else None for name, limit in limits.as_dict().items()},
-        "limited_by": simulation.limited_by,
+        "limited_by": limited_by,
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, particles),
-        "warnings": simulation.warnings(),
+        "expected_seconds": steps * seconds_per_step,
+        "warnings": warnings + stopped,
     }
-    result["expected_seconds"] = steps * _seconds_per_step(simulation)
-    return result
 
 
-def _seconds_per_step(simulation: Simulation) -> float:
+def _trial(simulation: Simulation) -> tuple[float, list[str]]:
+    """Seconds a step takes, and a warning if the run was stopped by a guard as early as in the trial."""
     simulation.advance()  # compiles, or loads what was compiled
-    taken, begin = [], clock.perf_counter()
-    while clock.perf_counter() - begin < TRIAL_SECONDS:
-        start = clock.perf_counter()
-        simulation.advance()
-        taken.append(clock.perf_counter() - start)
-    return median(taken)
+    taken: list[float] = []
+    begin = clock.perf_counter()
+    try:
+        while not taken or (
+            clock.perf_counter() - begin < TRIAL_SECONDS and simulation.time < simulation.case.until
+        ):
+            start = clock.perf_counter()
+            simulation.advance()
+            taken.append(clock.perf_counter() - start)
+    except GuardStop as stop:
+        if not taken:
+            raise
+        return median(taken), [f"this run will be {stop}"]
+    return median(taken), []

@@ -53,8 +53,8 @@ class Problem:
 
     def concerns(self, kind: str, name: str) -> bool:
         """Whether a case that asks for this plug-in may mean this one."""
-        if self.name is not None:
-            return (self.kind, self.name) == (kind, name)
+        if (self.kind, self.name) == (kind, name):
+            return True
         return name in re.split(r"[.:_]", self.entry_point) or name.replace("-", "_") in self.entry_point
 
 

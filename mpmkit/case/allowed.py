@@ -21,7 +21,7 @@ LONGEST = 60
 
 
 class Place:
-    """The alternatives that a schema has at one place of a document, without those that the document excludes.
+    """The alternatives that a schema has at one place of a document, as far as the document leaves them open.
 
     Args:
         schema: the whole JSON Schema.
@@ -93,7 +93,7 @@ class Place:
         choices = [value for item in items for value in _constants(item)]
         if choices:
             return one_of(choices)
-        kinds = {item.get("type") for item in items}
+        kinds = {str(item.get("type")) for item in items}
         return _count(node) + (PLURALS.get(kinds.pop(), "entries") if len(kinds) == 1 else "entries")
 
     def _descend(self, key: str | int) -> None:

@@ -16,7 +16,7 @@ from .allowed import shown
 from .messages import explain
 from .model import Case, case_model
 from .overrides import apply_overrides
-from .strict_json import decode
+from .strict_json import NESTED, decode
 
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
@@ -51,7 +51,7 @@ def parse_case(
     except ValidationError as error:
         raise CaseError(f"{source}: {explain(error, data, model, registry)}") from None
     except RecursionError:
-        raise CaseError(f"{source}: its objects and lists are nested too deeply") from None
+        raise CaseError(f"{source}: {NESTED}") from None
     except (TypeError, ValueError) as error:  # of json.dumps, for what Python can say and JSON cannot
         raise CaseError(f"{source}: {error}") from None
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import json
+from functools import lru_cache
 from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -17,6 +18,7 @@ from pydantic_core import core_schema
 from ..contracts import KINDS
 from ..registry import Registry
 from .allowed import LONGEST, Place, one_of, shown
+from .strict_json import NESTED
 
 PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
 """Kinds of error whose text is pydantic's; the others carry the sentence of a validator."""
@@ -36,7 +38,7 @@ class Complaint(NamedTuple):
 
 def explain(error: ValidationError, data: Any, model: type[BaseModel], registry: Registry) -> str:
     """The first error as a sentence, and how many more there are."""
-    schema = model.model_json_schema()
+    schema = _schema(model)
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
     # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
@@ -49,6 +51,11 @@ def explain(error: ValidationError, data: Any, model: type[BaseModel], registry:
     first, *rest = unknown + others
     more = f" (and {len(rest)} more)" if rest else ""
     return " ".join((_sentence(first, data, schema, registry) + more).split())
+
+
+@lru_cache(maxsize=4)
+def _schema(model: type[BaseModel]) -> dict:
+    return model.model_json_schema()
 
 
 def _complaint(item: Any, data: Any) -> Complaint:
@@ -78,8 +85,8 @@ def _distinct(complaints: list[Complaint]) -> list[Complaint]:
 
 def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry) -> str:
     path, kind, value, text = complaint
-    if kind == "json_invalid":
-        return f"it is not valid JSON: {text}"
+    if kind == "json_invalid":  # what Python's reader takes and pydantic's does not
+        return NESTED if "recursion" in text else f"it is not valid JSON: {text}"
     if kind == "extra_forbidden":
         return _unknown_key(path, Place(schema, data, path[:-1]).keys())
     if kind not in PYDANTICS_OWN:

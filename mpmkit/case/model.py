@@ -7,9 +7,9 @@ parameters are validated, documented and completed in an editor exactly as the b
 from __future__ import annotations
 
 import math
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 from operator import or_
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, create_model, model_validator
@@ -90,9 +90,14 @@ class Material(Model):
     )
     equation_of_state: EquationOfState
 
+    law_class: ClassVar[type[ConstitutiveLaw]]
+
     @cached_property
     def constitutive_law(self) -> ConstitutiveLaw:
-        raise NotImplementedError("only the models made by case_model know their law")
+        """The law with its parameters."""
+        return self.law_class.model_validate(
+            {name: getattr(self, name) for name in self.law_class.model_fields}
+        )
 
 
 class SineVelocity(Model):
@@ -236,13 +241,7 @@ def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
     own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
-
-    def constitutive_law(self: Material) -> ConstitutiveLaw:
-        return law.model_validate({name: getattr(self, name) for name in law.model_fields})
-
-    base = type(
-        "Material", (Material,), {"constitutive_law": property(constitutive_law), "__module__": __name__}
-    )
+    base = type("Material", (Material,), {"law_class": law, "__module__": __name__})
     return create_model(
         f"Material_{law.__name__}",
         __base__=base,
@@ -253,6 +252,7 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
     )
 
 
+@lru_cache(maxsize=4)
 def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
     laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]

@@ -60,7 +60,7 @@ def _assign(data: dict[str, Any], keys: list[str], value: Any) -> None:
         here = below
 
 
-def _index(here: Any, key: str, path: str) -> str | int:
+def _index(here: Any, key: str, path: str) -> Any:
     """The key, or the number that it stands for in a list."""
     if isinstance(here, dict):
         return key

@@ -13,4 +13,5 @@ def case_schema(registry: Registry) -> dict[str, Any]:
     schema = case_model(registry).model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["title"] = "mpmkit case"
+    schema["properties"]["$schema"] = {"type": "string", "description": "where an editor finds this schema"}
     return schema

@@ -6,6 +6,7 @@ import json
 import math
 from typing import Any
 
+NESTED = "its objects and lists are nested too deeply"
 MOST_DIGITS = 400
 """Longest number: more digits than any double has; Python's own limit would be told of in Python's words."""
 
@@ -22,7 +23,7 @@ def decode(text: str) -> Any:
             text, object_pairs_hook=_unique, parse_constant=_refuse, parse_float=_finite, parse_int=_integer
         )
     except RecursionError:
-        raise ValueError("its objects and lists are nested too deeply") from None
+        raise ValueError(NESTED) from None
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

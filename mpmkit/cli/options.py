@@ -12,6 +12,7 @@ set_values = click.option(
     metavar="PATH=VALUE",
     help="Change one value of the case, such as scheme.order=usf or bodies.0.material.yield_stress=50.",
 )
+until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
 threads = click.option(
     "--threads", type=click.IntRange(min=1), help="Threads to use; as many as pay off unless told."
 )
@@ -21,3 +22,8 @@ out = click.option(
     "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def with_until(overrides: tuple[str, ...], until: float | None) -> tuple[str, ...]:
+    """The overrides, and after them that of the option ``--until``."""
+    return overrides if until is None else (*overrides, f"until={until!r}")

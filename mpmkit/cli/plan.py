@@ -12,13 +12,16 @@ from . import options
 @click.command("plan")
 @options.case_file
 @options.set_values
+@options.until
 @options.threads
 @options.as_json
-def command(case: str, overrides: tuple[str, ...], threads: int | None, as_json: bool) -> None:
+def command(
+    case: str, overrides: tuple[str, ...], until: float | None, threads: int | None, as_json: bool
+) -> None:
     """Say what a run of CASE will cost: particles, nodes, steps, memory and time."""
     from ..case import load_case
 
-    loaded = load_case(case, overrides)
+    loaded = load_case(case, options.with_until(overrides, until))
 
     from ..plan import plan
 

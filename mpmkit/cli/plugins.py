@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 
 import click
 
 from . import options
+
+COLUMNS = ("kind", "name", "distribution", "citation")
 
 
 @click.command("plugins")
@@ -28,23 +31,17 @@ def command(as_json: bool) -> None:
         for kind, entries in registry.plugins.items()
         for name, entry in sorted(entries.items())
     ]
-    problems = [
-        {"distribution": p.distribution, "entry_point": p.entry_point, "reason": p.reason}
-        for p in registry.problems
-    ]
     if as_json:
+        problems = [asdict(problem) for problem in registry.problems]
         click.echo(json.dumps({"plugins": found, "problems": problems}, indent=2, ensure_ascii=False))
         return
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False)
-    for title in ("kind", "name", "distribution", "source"):
-        table.add_column(title)
-    for entry in found:
-        origin = f"{entry['distribution']} {entry['version']}"
-        table.add_row(entry["kind"], entry["name"], origin, entry["citation"])
-    Console().print(table)
+    rows = [COLUMNS] + [
+        (entry["kind"], entry["name"], f"{entry['distribution']} {entry['version']}", entry["citation"])
+        for entry in found
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
+    for row in rows:
+        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
+        click.echo("  ".join(cells).rstrip())
     for problem in registry.problems:
         click.echo(str(problem), err=True)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import logging
 from pathlib import Path
 
 import click
@@ -15,7 +13,7 @@ from . import options
 @options.case_file
 @options.out
 @options.set_values
-@click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
+@options.until
 @options.threads
 @options.overwrite
 @options.quiet
@@ -31,18 +29,22 @@ def command(
     """Run CASE and write its history, frames, summary and report into a run directory."""
     from ..case import load_case
 
-    if until is not None:
-        overrides = (*overrides, f"until={json.dumps(until)}")
-    loaded = load_case(case, overrides)
+    loaded = load_case(case, options.with_until(overrides, until))
     directory = Path(out) if out is not None else Path("runs") / loaded.name
 
-    from ..runner import run  # after the case is read: what it costs to load is not spent on a bad case
-    from .display import Display, show_log, show_summary
+    import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
 
-    show_log(logging.ERROR if quiet else logging.INFO)
-    if quiet:
-        run(loaded, directory, overwrite=overwrite, threads=threads)
-        return
-    with Display(loaded.name) as display:
-        run(loaded, directory, overwrite=overwrite, threads=threads, listen=display)
+    from ..runner import run
+
+    with np.errstate(
+        all="ignore"
+    ):  # a run that diverges is told of by its guard, not by every array on the way
+        if quiet:
+            run(loaded, directory, overwrite=overwrite, threads=threads)
+            return
+
+        from .display import Display, show_summary
+
+        with Display(loaded.name) as display:
+            run(loaded, directory, overwrite=overwrite, threads=threads, listen=display)
     show_summary(directory)

@@ -68,16 +68,16 @@ class Measures:
         }
 
     def _spread(self, p: Particles) -> float:
-        """Mean diameter over the horizontal axes, m."""
+        """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
         diameters = []
         for a in range(self.grid.dim - 1):
+            if self.grid.periodic[a]:
+                continue
             high = float((p.position[:, a] + p.half_size[:, a]).max())
             low = float((p.position[:, a] - p.half_size[:, a]).min())
-            if self.case.space_.radial:
-                diameters.append(2 * high)
-            else:
-                diameters.append(2 * high if _cut(self.case, self.grid, a) else high - low)
-        return float(np.mean(diameters))
+            mirrored = self.case.space_.radial or _cut(self.case, self.grid, a)
+            diameters.append(2 * high if mirrored else high - low)
+        return float(np.mean(diameters)) if diameters else np.nan
 
     def _height(self, p: Particles, of: slice | np.ndarray) -> float:
         """Top of the material above the grid's lower face, m; 0 where there is none."""

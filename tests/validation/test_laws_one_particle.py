@@ -39,7 +39,7 @@ def simple_shear(rates, along: int = 0, across: int = 2) -> np.ndarray:
 
 
 def uniaxial(rates, axis: int = 2) -> np.ndarray:
-    """Squeezed along an axis at these rates, and free to grow across it at half of them: no change of volume."""
+    """Squeezed along an axis at these rates, and swelling across it at half of them: no change of volume."""
     L = np.zeros((len(rates), 3, 3))
     L[:, range(3), range(3)] = np.asarray(rates)[:, None] / 2
     L[:, axis, axis] = -np.asarray(rates)

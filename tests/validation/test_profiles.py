@@ -14,7 +14,6 @@ from __future__ import annotations
 import numba
 import numpy as np
 import pytest
-
 from channel import Channel, Fluid, down_slope, names, observed_order
 
 CONCRETE = Fluid(188.91, 45.65, 1.33, density=2574.0)
@@ -41,7 +40,7 @@ def test_formulas_give_the_table():
         assert CONCRETE.plug_speed(down_slope(2574.0, degrees)[0], 0.05) == pytest.approx(speed, rel=2e-3)
 
 
-# --- Plane Poiseuille flow -------------------------------------------------------------------------------------
+# --- Plane Poiseuille flow --------------------------------------------------------------------------------
 
 
 def hold_to_the_table(flow: Channel, plug: float, discharge: float) -> None:
@@ -53,7 +52,7 @@ def hold_to_the_table(flow: Channel, plug: float, discharge: float) -> None:
 
 @pytest.mark.parametrize("order", ["usl", pytest.param("usf", marks=pytest.mark.slow)])
 def test_unit_bingham_from_rest(order):
-    m = UNIT.exponent(1.0, 1.0, excess=0.004)
+    m = UNIT.exponent(1.0, 1.0, excess=0.006)
     flow = Channel(UNIT, 1.0, 1.0, m=m, order=order)
     flow.run_until_steady(1e-3, interval=0.05, at_most=10.0)
     hold_to_the_table(flow, 0.28125, 0.210938)
@@ -85,10 +84,38 @@ def test_order_of_newtonian_flow(shape, order):
     assert observed_order(cells, errors) > 1.0
 
 
+def errors_of_uneven_layers(shape: str) -> tuple[list[int], list[float]]:
+    cells, errors = [5, 10, 20], []
+    for n in cells:
+        flow = Channel(WATER, 1.0, 1.0, cells=n, shape=shape)
+        flow.space_unevenly(0.3)
+        flow.run(4.0)
+        errors.append(flow.error(WATER.speed(1.0, 1.0, flow.z)))
+    return cells, errors
+
+
+def test_order_of_newtonian_flow_with_uneven_particles():
+    """cpGIMP integrates over boxes that fill the gap, wherever their edges are."""
+    cells, errors = errors_of_uneven_layers("cpgimp")
+    assert errors[1] < BAND
+    assert observed_order(cells, errors) > 1.0
+
+
+def test_linear_shape_does_not_converge_with_uneven_particles():
+    """A point's whole volume counts in the cell that it is in, so that a cell has too much or too little.
+
+    That error is one of the sampling and does not shrink with the cells (Steffen, Kirby & Berzins, Int. J.
+    Numer. Meth. Eng. 76 (2008) 922-948): it is why cpGIMP is the default.
+    """
+    cells, errors = errors_of_uneven_layers("linear")
+    assert errors[2] > BAND
+    assert observed_order(cells, errors) < 0.5
+
+
 @pytest.mark.parametrize("shape", names("shape"))
 def test_order_of_viscoplastic_flow(shape):
     """Against the exact profile of the regularised fluid, so that the error is the grid's alone."""
-    cells, errors, m = [5, 10, 20], [], 20.0
+    cells, errors, m = [5, 10, 20], [], 10.0
     for n in cells:
         flow = Channel(UNIT, 1.0, 1.0, cells=n, m=m, shape=shape, order="musl", fraction=1.0)
         flow.run_until_steady(1e-4, interval=0.1, at_most=10.0)
@@ -104,7 +131,7 @@ def test_surface_excess_of_the_regularisation():
         assert faster == pytest.approx(0.25 / m, rel=0.1)
 
 
-# --- Films -----------------------------------------------------------------------------------------------------
+# --- Films ------------------------------------------------------------------------------------------------
 
 
 def film(degrees: float, height: float, m: float, cells: int = 10) -> Channel:
@@ -118,9 +145,9 @@ def film(degrees: float, height: float, m: float, cells: int = 10) -> Channel:
 def test_film_on_20_degrees():
     """Started 3 % too slow, so that it has to find its speed. It flows at 56.42 mm/s."""
     drive, _ = down_slope(CONCRETE.density, 20)
-    flow = film(20, 0.05, CONCRETE.exponent(drive, 0.05, excess=0.005))
+    flow = film(20, 0.05, CONCRETE.exponent(drive, 0.05, excess=0.008))
     flow.start_with(0.97 * CONCRETE.speed(drive, 0.05, flow.z))
-    flow.run_until_steady(5e-4, interval=0.01, at_most=1.0)
+    flow.run_until_steady(1e-3, interval=0.01, at_most=1.0)
     assert flow.plug_speed() == pytest.approx(0.05642, rel=BAND)
     assert flow.error(CONCRETE.speed(drive, 0.05, flow.z)) < BAND
 
@@ -191,7 +218,7 @@ def test_film_below_its_critical_thickness_stays():
     assert flow.plug_speed() == pytest.approx(creep, rel=BAND)
 
 
-# --- Arrest ----------------------------------------------------------------------------------------------------
+# --- Arrest -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("drive", "m", "at_rest"), [(0.0, 500.0, 0.409), (0.2, 1000.0, 0.696)])

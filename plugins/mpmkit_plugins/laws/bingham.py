@@ -8,7 +8,10 @@ from .regularisation import yield_viscosity
 
 
 class Bingham(GeneralisedNewtonianLaw):
-    """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + mu_p."""
+    """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + mu_p.
+
+    In simple shear tau = tau0 (1 - exp(-m γ̇)) + mu_p γ̇: short of Bingham's by tau0 exp(-m γ̇).
+    """
 
     name = "bingham"
     citation = "Bingham, Fluidity and Plasticity (1922); Papanastasiou, J. Rheol. 31 (1987) 385-404"

@@ -8,7 +8,12 @@ from .regularisation import power_viscosity, yield_viscosity
 
 
 class HerschelBulkley(GeneralisedNewtonianLaw):
-    """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + k γ̇^(n-1): eq. 7 of Ferreira et al."""
+    """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + k γ̇^(n-1): eq. 7 of Ferreira et al.
+
+    In simple shear tau = tau0 (1 - exp(-m γ̇)) + k γ̇^n. Below the yield stress it creeps at about
+    tau / (tau0 m), and at rest its viscosity is tau0 m, which bounds the time step: a large m is exact and
+    slow. Where n < 1, the power law keeps below γ̇ = 1/m the viscosity that it has there.
+    """
 
     name = "herschel-bulkley"
     citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"

@@ -6,7 +6,7 @@ from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
 
 
 class Newtonian(GeneralisedNewtonianLaw):
-    """mu(γ̇) = mu."""
+    """mu(γ̇) = mu: tau = mu γ̇ in simple shear."""
 
     name = "newtonian"
     citation = "Batchelor, An Introduction to Fluid Dynamics (2000)"

@@ -1,0 +1,184 @@
+"""The command line: exit statuses, options, and what is printed where."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import xarray
+
+import mpmkit
+from mpmkit.cli import main
+
+CASE = {
+    "space": "plane-strain",
+    "until": 0.02,
+    "grid": {
+        "cell_size": 0.1,
+        "domain": {"x": [0, 1], "z": [0, 1]},
+        "faces": {"z_min": "slip", "x_min": "slip", "x_max": "slip"},
+    },
+    "bodies": [
+        {
+            "shape": {"kind": "box", "lower": [0.2, 0.0], "upper": [0.6, 0.4]},
+            "material": {"law": "newtonian", "density": 1000, "viscosity": 10, "sound_speed": 20},
+        }
+    ],
+    "output": {"report": False},
+}
+
+
+@pytest.fixture
+def case(tmp_path, monkeypatch):
+    """A tiny case file in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tiny.json").write_text(json.dumps(CASE), encoding="utf-8")
+    return "tiny.json"
+
+
+def status(*arguments):
+    with pytest.raises(SystemExit) as stop:
+        main([str(argument) for argument in arguments])
+    return stop.value.code
+
+
+def test_a_run_into_the_directory_of_its_name(case, tmp_path, capsys):
+    assert status("run", case) == 0
+    directory = tmp_path / "runs" / "tiny"
+    assert {p.name for p in directory.iterdir()} == {
+        "case.json",
+        "history.nc",
+        "summary.json",
+        "frames",
+        "run.log",
+    }
+    shown = capsys.readouterr()
+    assert "final spread" in shown.out
+    assert "results in runs/tiny" in shown.out
+    assert "64 particles" in shown.err
+    assert not any(ord(character) < 32 and character != "\n" for character in shown.out + shown.err)
+
+
+def test_quiet_prints_nothing(case, capfd):
+    assert status("run", case, "--quiet", "--until", "0.002") == 0
+    assert capfd.readouterr() == ("", "")
+
+
+def test_options_reach_the_run(case, tmp_path):
+    arguments = ("--set", "scheme.order=usf", "--set", "bodies.0.material.viscosity=20", "--until", "0.001")
+    assert status("run", case, "--out", "elsewhere", "--threads", "1", "--quiet", *arguments) == 0
+    resolved = json.loads((tmp_path / "elsewhere" / "case.json").read_text())
+    assert resolved["scheme"]["order"] == {"name": "usf"}
+    assert resolved["bodies"][0]["material"]["viscosity"] == 20
+    assert resolved["until"] == 0.001
+
+
+def test_a_run_is_overwritten_only_if_asked(case, capsys):
+    short = ("run", case, "--quiet", "--until", "0.001")
+    assert status(*short) == 0
+    assert status(*short) == 2
+    assert "--overwrite" in one_line(capsys)
+    assert status(*short, "--overwrite") == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["tiny.json", "--until", "-1"], "until is -1.0; it must be a number above 0, in s"),
+        (["tiny.json", "--until", "nan"], 'until is "nan"; it must be a number above 0, in s'),
+        (["tiny.json", "--until", "soon"], "Invalid value for '--until': 'soon' is not a valid float"),
+        (["tiny.json", "--threads", "0"], "Invalid value for '--threads'"),
+        (["tiny.json", "--set", "until"], "it must read path.to.key=value"),
+        (["tiny.json", "--set", "scheme.order=uls"], 'did you mean "usl"?'),
+        (["tiny.json", "--set", "grid.cell_size=1e-6"], "GiB of memory, but this machine has"),
+        (["tiny.json", "--set", "bodies.0.shape.upper=[0.21,0.01]"], "holds no particle"),
+        (["tiny.json", "--set", "name=../up"], 'name is "../up"'),
+        (["tiny.json", "--untill", "1"], "see mpmkit run --help"),
+        (["missing.json"], "No such file"),
+        (["."], "Is a directory"),
+        ([], "Missing argument 'CASE'"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_writes_nothing(arguments, expected, case, tmp_path, capsys):
+    assert status("run", *arguments) == 2
+    assert expected in one_line(capsys)
+    assert [path.name for path in tmp_path.iterdir()] == ["tiny.json"]
+
+
+def test_an_unknown_command(capsys):
+    assert status("rum") == 2
+    assert "'rum'" in one_line(capsys)
+
+
+@pytest.mark.parametrize("out", ["tiny.json", "tiny.json/below", "/proc/nowhere"])
+def test_what_cannot_be_written_is_status_4(out, case, capsys):
+    assert status("run", case, "--out", out, "--quiet") == 4
+    assert f"cannot write '{out}" in one_line(capsys)
+
+
+def test_help_and_version(capsys):
+    assert status("--version") == 0
+    assert capsys.readouterr().out == f"mpmkit, version {mpmkit.__version__}\n"
+    assert status() == 0
+    listing = capsys.readouterr().out
+    for command in ("run", "plan", "plugins", "schema"):
+        assert f"  {command} " in listing
+        assert status(command, "-h") == 0
+        assert f"Usage: mpmkit {command}" in capsys.readouterr().out
+    assert "130 interrupted" in listing
+
+
+def test_python_m_mpmkit_and_what_it_loads():
+    """The help needs none of the libraries that take their time to load."""
+    code = "import sys; sys.argv = ['mpmkit', '--help']; import runpy, atexit; "
+    code += "slow = ('numpy', 'numba', 'pydantic', 'xarray', 'rich'); "
+    code += "atexit.register(lambda: print([name for name in slow if name in sys.modules])); "
+    code += "runpy.run_module('mpmkit', run_name='__main__')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "Usage: mpmkit" in done.stdout
+    assert done.stdout.endswith("[]\n")
+
+
+def test_an_interrupted_run_keeps_its_history(case, tmp_path):
+    command = [sys.executable, "-m", "mpmkit", "run", case, "--until", "1e4"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    directory = tmp_path / "runs" / "tiny"
+    try:
+        deadline = time.monotonic() + 60
+        while not (directory / "history.nc").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)
+        os.kill(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode == 130, said
+    assert said.splitlines()[-1] == "mpmkit: interrupted"
+    assert "Traceback" not in said
+    assert json.loads((directory / "summary.json").read_text())["stopped_because"] == "interrupted"
+    with xarray.open_dataset(directory / "history.nc") as history:
+        assert len(history.time) >= 1
+        assert history.attrs["stopped_because"] == "interrupted"
+
+
+def test_plan(case, capsys):
+    assert status("plan", case) == 0
+    text = capsys.readouterr().out
+    assert "particles      64" in text
+    assert "acoustic" in text
+    assert status("plan", case, "--json", "--until", "0.04") == 0
+    cost = json.loads(capsys.readouterr().out)
+    keys = {"particles", "nodes", "steps", "time_step", "limits", "memory_bytes", "expected_seconds"}
+    assert keys <= cost.keys()
+
+
+def one_line(capsys):
+    """What was said on standard error, which must be one line, and nothing on standard output."""
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith("mpmkit: ")
+    return line

@@ -1,0 +1,69 @@
+"""What a run will cost: counts, limits, and memory against what is really allocated."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mpmkit.case import load_case, parse_case
+from mpmkit.memory import SORTING, bytes_per_particle, expected_bytes, expected_particles, window_nodes
+from mpmkit.plan import plan
+from mpmkit.solver.simulation import Simulation
+
+CASES = Path(__file__).parent.parent / "cases"
+
+
+@pytest.fixture(scope="module")
+def ferreira():
+    return plan(load_case(CASES / "slump_ferreira.json"))
+
+
+def test_the_paper_s_scene_is_planned_as_the_paper_has_it(ferreira):
+    assert ferreira["particles"] == pytest.approx(351_860, rel=1e-3)
+    assert ferreira["nodes"] == [146, 146, 64]
+    assert ferreira["steps"] == pytest.approx(388_000, rel=1e-2)
+    assert ferreira["time_step"] == pytest.approx(1.03e-5, rel=1e-2)
+    assert ferreira["sound_speed"] == [pytest.approx(121.3, rel=1e-3)]
+    assert ferreira["limited_by"] == "acoustic"
+    assert ferreira["time_step"] / ferreira["limits"]["viscous"] == pytest.approx(80, rel=0.02)
+    (warning,) = ferreira["warnings"]
+    assert "viscous limit of 1.28e-07 s 80.7-fold" in warning
+    assert ferreira["expected_seconds"] > 0
+    json.dumps(ferreira, allow_nan=False)
+
+
+SCENES = {
+    "axisymmetric": ("slump.json", ["grid.cell_size=0.0025", "grid.domain.z=[0,0.305]"]),
+    "quarter": ("slump_quarter.json", []),
+    "stretch": ("slump.json", ["scheme.shape.domain=stretch"]),
+    "linear": ("slump.json", ["scheme.shape=linear"]),
+    "whole cone": (
+        "slump_ferreira.json",
+        [
+            "grid.cell_size=0.01",
+            "grid.domain=" + json.dumps({"x": [-0.36, 0.36], "y": [-0.36, 0.36], "z": [0, 0.31]}),
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize(("file", "overrides"), SCENES.values(), ids=SCENES)
+def test_expected_memory_is_that_of_the_arrays(file, overrides):
+    case = load_case(CASES / file, overrides)
+    simulation = Simulation(case)
+    simulation.operations.begin()
+    n, operations = len(simulation.particles), simulation.operations
+    assert expected_particles(case) == pytest.approx(n, rel=0.01)
+    tables = operations.base, operations.weight, operations.gradient, operations.hoop
+    held = simulation.particles.nbytes + sum(table.nbytes for table in tables)
+    assert bytes_per_particle(case) - 8 * SORTING == pytest.approx(held / n, rel=0.1)
+    assert window_nodes(case) == pytest.approx(1.25 * len(operations.window.nodes), rel=0.25)
+    total = held + operations.window.nodes.base.nbytes + 8 * SORTING * n
+    assert expected_bytes(case, n) == pytest.approx(total, rel=0.25)
+
+
+def test_a_kept_history_counts():
+    data = json.loads((CASES / "slump.json").read_text())
+    plain = expected_bytes(parse_case(data), 1000)
+    data["output"] = {"particle_history": ["position", "stress"], "history_interval": 0.04}
+    assert expected_bytes(parse_case(data), 1000) - plain == pytest.approx(2 * 100 * (2 + 6) * 8 * 1000)

@@ -1,0 +1,232 @@
+"""Discovery: whatever a stranger's distribution does stays its own problem, and is told of."""
+
+import json
+import sys
+import textwrap
+
+import pytest
+
+from mpmkit.case import parse_case
+from mpmkit.cli import main
+from mpmkit.errors import CaseError
+from mpmkit.registry import discover, installed
+
+LAW = """
+import numpy as np
+from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
+
+class Slurry(GeneralisedNewtonianLaw):
+    '''mu = tau0 / (γ̇ + γ̇0) + mu_p, a plastic regularised by a shear rate.'''
+
+    name = "slurry"
+    citation = "nobody, nowhere (2024)"
+
+    yield_stress: float = quantity("Pa", "yield stress", ge=0)
+    plastic_viscosity: float = quantity("Pa s", "plastic viscosity", ge=0)
+    smallest_rate: float = quantity("1/s", "regularising shear rate", gt=0, default=1.0)
+
+    def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
+        return self.yield_stress / (shear_rate + self.smallest_rate) + self.plastic_viscosity
+
+@hookimpl
+def mpmkit_laws():
+    return [Slurry]
+"""
+
+BROKEN = {
+    "import error": ("import nothing_of_this_name\n", "No module named 'nothing_of_this_name'"),
+    "exit at import": ("raise SystemExit(3)\n", "SystemExit: 3"),
+    "syntax error": ("def f(:\n", "SyntaxError"),
+    "misspelt hook": (LAW.replace("def mpmkit_laws", "def mpmkit_law"), "did you mean mpmkit_laws?"),
+    "API version": (
+        LAW.replace('name = "slurry"', 'name = "slurry"\n    api_version = 2'),
+        "written for API version 2, this is version 1",
+    ),
+    "no subclass": (LAW.replace("return [Slurry]", "return [int]"), "not a subclass of ConstitutiveLaw"),
+    "no list": (LAW.replace("return [Slurry]", "return Slurry"), "must return a list of classes"),
+    "registers nothing": ("x = 1\n", "registers nothing"),
+    "empty list": (LAW.replace("return [Slurry]", "return []"), "registers nothing"),
+    "raising hook": (LAW.replace("return [Slurry]", "return [1 / 0]"), "ZeroDivisionError"),
+    "no citation": (LAW.replace('    citation = "nobody, nowhere (2024)"', ""), "has no 'citation'"),
+    "upper-case name": (LAW.replace('"slurry"', '"Slurry"'), "must be of lower-case letters"),
+    "abstract": (LAW.replace("def apparent_viscosity", "def apparent"), "lacks apparent_viscosity"),
+    "reserved key": (LAW.replace("smallest_rate", "density"), "parameter 'density'"),
+}
+
+
+@pytest.fixture
+def distribution(tmp_path, monkeypatch):
+    """Makes a distribution with one entry point a module, found until the test is over."""
+    made = []
+
+    def make(name, **sources):
+        entries = []
+        for entry, source in sources.items():
+            module = f"{name.replace('-', '_')}_{entry}"
+            made.append(module)
+            (tmp_path / f"{module}.py").write_text(textwrap.dedent(source), encoding="utf-8")
+            entries.append(f"law.{entry} = {module}")
+        info = tmp_path / f"{name.replace('-', '_')}-1.2.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.2\n", encoding="utf-8"
+        )
+        (info / "entry_points.txt").write_text("[mpmkit]\n" + "\n".join(entries) + "\n", encoding="utf-8")
+
+    monkeypatch.syspath_prepend(tmp_path)
+    installed.cache_clear()
+    yield make
+    installed.cache_clear()
+    for module in made:
+        sys.modules.pop(module, None)
+
+
+def case(law="slurry", **changes):
+    return {
+        "space": "plane-strain",
+        "until": 0.001,
+        "grid": {"cell_size": 0.1, "domain": {"x": [0, 1], "z": [0, 1]}, "faces": {"z_min": "slip"}},
+        "bodies": [
+            {
+                "shape": {"kind": "box", "lower": [0.2, 0], "upper": [0.6, 0.4]},
+                "material": {
+                    "law": law,
+                    "density": 2000,
+                    "yield_stress": 100,
+                    "plastic_viscosity": 50,
+                    "sound_speed": {"factor": 10},
+                },
+            }
+        ],
+        "scheme": {"time_step": {"ignore": ["viscous"]}},
+        "output": {"report": False},
+    } | changes
+
+
+def status(*arguments):
+    with pytest.raises(SystemExit) as stop:
+        main([str(argument) for argument in arguments])
+    return stop.value.code
+
+
+def test_built_ins_have_no_problems():
+    registry = discover()
+    assert [p for p in registry.problems if p.distribution == "mpmkit"] == []
+    assert all(registry.plugins.values())
+
+
+@pytest.mark.parametrize(("source", "reason"), BROKEN.values(), ids=BROKEN)
+def test_a_broken_plugin_is_reported_and_breaks_no_other(source, reason, distribution, tmp_path, capsys):
+    distribution("broken-pack", slurry=source)
+    distribution("good-pack", mud=LAW.replace('"slurry"', '"mud"'))
+
+    assert status("plugins") == 0
+    listed = capsys.readouterr()
+    assert "mud" in listed.out
+    assert "bingham" in listed.out
+    assert "slurry" not in listed.out
+    assert "plug-in 'law.slurry' of distribution 'broken-pack' is not usable" in listed.err
+    assert reason in listed.err
+
+    assert status("plugins", "--json") == 0
+    (problem,) = json.loads(capsys.readouterr().out)["problems"]
+    assert (problem["distribution"], problem["entry_point"]) == ("broken-pack", "law.slurry")
+    assert reason in problem["reason"]
+
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case()), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "run") == 2
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert '.law is "slurry"; it must be "bingham"' in sentence
+    assert "'law.slurry' of distribution 'broken-pack'" in sentence
+    assert reason in sentence
+    assert not (tmp_path / "run").exists()
+
+    parse_case(case("bingham"))
+    parse_case(case("mud"))
+
+
+def test_a_bad_plugin_leaves_the_good_ones_of_its_module(distribution):
+    source = LAW.replace("return [Slurry]", "return [Slurry, int]")
+    distribution("half-pack", slurry=source)
+    registry = discover()
+    assert "slurry" in registry.plugins["law"]
+    assert [p.distribution for p in registry.problems] == ["half-pack"]
+
+
+@pytest.mark.parametrize("name", ["bingham", "slurry"])
+def test_two_of_one_name_are_both_refused(name, distribution):
+    rivals = {"one-pack", "two-pack"} if name == "slurry" else {"one-pack", "mpmkit"}
+    for rival in rivals - {"mpmkit"}:
+        distribution(rival, wet=LAW.replace('"slurry"', f'"{name}"'))
+    registry = discover()
+    assert name not in registry.plugins["law"]
+    assert {p.distribution for p in registry.problems} == rivals
+    with pytest.raises(CaseError, match=f'law is "{name}"; it must be') as refused:
+        parse_case(case(name), registry=registry)
+    for rival in rivals:
+        assert f"of '{rival}'" in str(refused.value)
+    parse_case(case("newtonian", bodies=_newtonian()), registry=registry)
+
+
+def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
+    source = """
+        from mpmkit.contracts import VolumetricTreatment, hookimpl
+
+        class Own(VolumetricTreatment):
+            name = "{name}"
+            citation = "nobody"
+
+            def average(self, ops, field):
+                return field
+
+        @hookimpl
+        def mpmkit_volumetric_treatments():
+            return [{classes}]
+    """
+    names = list(discover().plugins["volumetric"])
+    body = "".join(
+        f"""
+            class C{k}(Own):
+                name = "{name}"
+        """
+        for k, name in enumerate(names)
+    )
+    text = textwrap.dedent(source).replace("{name}", "mine")
+    text = text.replace("@hookimpl", textwrap.dedent(body) + "\n@hookimpl")
+    distribution("greedy-pack", own=text.replace("{classes}", ", ".join(f"C{k}" for k in range(len(names)))))
+    registry = discover()
+    assert registry.plugins["volumetric"] == {}
+    with pytest.raises(CaseError, match=r"scheme\.volumetric .*greedy-pack"):
+        parse_case(case("bingham"), registry=registry)
+
+
+def test_a_good_law_of_a_third_party_runs_from_the_command_line(distribution, tmp_path, capsys):
+    distribution("slurry-pack", slurry=LAW)
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case()), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "run", "--quiet") == 0
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    used = {p["name"]: p for p in summary["plugins"]}
+    assert used["slurry"] == {
+        "kind": "law",
+        "name": "slurry",
+        "distribution": "slurry-pack",
+        "version": "1.2",
+    }
+
+    assert status("schema") == 0
+    schema = json.loads(capsys.readouterr().out)
+    parameters = schema["$defs"]["Material_Slurry"]["properties"]
+    assert parameters["smallest_rate"]["unit"] == "1/s"
+    assert "regularising" in parameters["smallest_rate"]["description"]
+
+    path.write_text(json.dumps(case()).replace('"yield_stress": 100', '"yield_stres": 100'), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "other") == 2
+    assert "unknown key 'yield_stres'; did you mean 'yield_stress'?" in capsys.readouterr().err
+
+
+def _newtonian():
+    (body,) = case()["bodies"]
+    body["material"] = {"law": "newtonian", "density": 1000, "viscosity": 1.0, "sound_speed": 10}
+    return [body]
