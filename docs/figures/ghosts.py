@@ -5,17 +5,11 @@
 Takes about a minute. The second floor is no choice of mpmkit; it is put in here from outside.
 """
 
-import csv
-from pathlib import Path
-
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from common import DOCS, figure, plot_reference
 
 import mpmkit
 
-DOCS = Path(__file__).parents[1]
-REFERENCE = DOCS.parent / "tests/validation/reference/slump_free_slip_herschel_bulkley.csv"
 COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}']
 TIMES = np.linspace(0, 1, 51)
 
@@ -52,21 +46,13 @@ def main() -> None:
     mirror = mpmkit.Simulation(mpmkit.load_case(path, COARSE))
     zero = mpmkit.Simulation(mpmkit.load_case(path, [*COARSE, "grid.faces.z_min=open"]))
     hold_floor(zero)
-    with REFERENCE.open() as lines:
-        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
-    figure = Figure(figsize=(6.4, 4), dpi=160, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    reference = [[float(row[name]) for row in rows] for name in ("time_s", "spread_diameter_m")]
-    axes.plot(reference[0], np.multiply(reference[1], 1e3), "k--", label="incompressible finite elements")
+    sheet, axes = figure("Slump, free-slip floor, axisymmetric, 10 mm, the seed's scheme")
+    plot_reference(axes)
     axes.plot(TIMES, np.multiply(spread(mirror), 1e3), color="#0072B2", label="ghosts mirror the floor")
     axes.plot(TIMES, np.multiply(spread(zero), 1e3), color="#D55E00", label="ghosts held at zero")
-    axes.set(xlim=(0, 1), ylim=(180, 580), xlabel="time / s", ylabel="spread diameter / mm")
-    axes.set_title("Slump, free-slip floor, axisymmetric, 10 mm, the seed's scheme", fontsize=10)
-    axes.grid(alpha=0.3)
     axes.legend(frameon=False)
-    figure.savefig(DOCS / "images" / "ghosts.png")
+    sheet.savefig(DOCS / "images" / "ghosts.png")
 
 
 if __name__ == "__main__":

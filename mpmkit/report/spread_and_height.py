@@ -24,7 +24,7 @@ def draw(results: RunResults) -> Figure | None:
     for name, values in curves.items():
         label, colour, dashes = CURVES[name]
         axes.plot(results.time, values * MILLIMETRES, color=colour, linestyle=dashes, label=label)
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0, 1.05 * axes.dataLim.y1)
     t500 = results.summary.get("t500")
     if t500 is not None:
         level = T500_DIAMETER * MILLIMETRES

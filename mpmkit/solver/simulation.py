@@ -59,9 +59,10 @@ class Simulation:
         """One step, no longer than ``at_most`` seconds; returns its length.
 
         Raises:
-            GuardStop: a particle is outside the grid or not finite.
+            GuardStop: a particle is outside the grid, not finite, or without volume.
         """
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
+            self.check()
             self.choose_time_step()
         lost = self.operations.begin()
         if lost is not None:
@@ -73,35 +74,36 @@ class Simulation:
         return dt
 
     def check(self) -> None:
-        """Raise GuardStop if the last step has sent a particle out of the grid or to infinity."""
+        """Raise GuardStop if a particle has a state that is not finite, or a volume that is not positive."""
         p = self.particles
-        fine = (
-            np.isfinite(p.position).all(axis=1)
-            & np.isfinite(p.velocity).all(axis=1)
-            & np.isfinite(p.pressure)
-        )
-        fine &= np.isfinite(p.stress).all(axis=1)
+        fine = np.isfinite(p.position).all(axis=1) & np.isfinite(p.velocity).all(axis=1)
+        fine &= np.isfinite(p.stress).all(axis=1) & np.isfinite(p.pressure)
         if not fine.all():
             self._stop(int(np.argmin(fine)))
+        if not (p.volume_ratio > 0).all():
+            self._stop(int(np.argmin(p.volume_ratio)))
 
     def _stop(self, index: int) -> None:
-        p = self.particles
-        number = int(p.number[index])
-        position, velocity = p.position[index] + self.grid.lower, p.velocity[index]
-        when = f"stopped at step {self.steps}, t = {self.time:.6g} s: particle {number}"
-        if np.isfinite(position).all() and np.isfinite(velocity).all() and np.isfinite(p.stress[index]).all():
-            where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(self.grid.axes, position, strict=True))
-            raise GuardStop(
-                "particle-outside",
-                f"{when} left the grid at {where} m; enlarge grid.domain, close that face, "
-                "or, if it was thrown out, reduce scheme.time_step.fraction",
-                step=self.steps,
-                particle=number,
-            )
+        """Raise the GuardStop that fits what has become of a particle."""
+        p, axes = self.particles, self.grid.axes
+        number, position = int(p.number[index]), p.position[index] + self.grid.lower
+        state = np.concatenate([position, p.velocity[index], p.stress[index], p.pressure[index : index + 1]])
+        if not np.isfinite(state).all():
+            guard = "non-finite"
+            what = "has a position, velocity or stress that is not finite"
+            cure = "the run diverged, reduce scheme.time_step.fraction"
+        elif p.volume_ratio[index] <= 0:
+            guard = "volume-ratio"
+            what = f"has a volume ratio of {p.volume_ratio[index]:.3g}, which is not positive"
+            cure = "the run diverged, reduce scheme.time_step.fraction"
+        else:
+            guard = "particle-outside"
+            where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
+            what = f"left the grid at {where} m"
+            cure = "enlarge grid.domain, close that face, or reduce scheme.time_step.fraction if it was thrown out"
         raise GuardStop(
-            "non-finite",
-            f"{when} has a position, velocity or stress that is not finite; the run diverged, "
-            "reduce scheme.time_step.fraction",
+            guard,
+            f"stopped at step {self.steps}, t = {self.time:.6g} s: particle {number} {what}; {cure}",
             step=self.steps,
             particle=number,
         )

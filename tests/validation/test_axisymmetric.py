@@ -1,4 +1,4 @@
-"""Axisymmetric scenes: u_r = e r is a uniform expansion, exactly, at the axis too; a ring has a ring's mass."""
+"""Axisymmetric scenes: u_r = e r is a uniform expansion, exactly, at the axis too; a ring has its mass."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def set_nodes(simulation, radial, axial=0.0):
 @pytest.mark.parametrize("per_cell", [1, 4, 9, [3, 2]], ids=str)
 @pytest.mark.parametrize("body", [CYLINDER, BALL], ids=["cylinder", "ball"])
 def test_patch(shape, per_cell, body):
-    """v_r = e r at the nodes: D_rr = D_θθ = e to 1e-12 at every particle, at the axis too, and nothing else."""
+    """v_r = e r at the nodes: D_rr = D_θθ = e to 1e-12 at every particle, at the axis too."""
     simulation = scene(shape, body, per_cell)
     rate = 0.7
     ops, p = simulation.operations, simulation.particles

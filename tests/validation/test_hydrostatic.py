@@ -1,11 +1,11 @@
 """A column of fluid at rest: p = rho g (H - z), and nothing flows.
 
 A Newtonian column in a slip tube is let go at t = 0 and settles to its own weight: acoustic oscillations of
-wave number k = pi / 2 H decay at the rate 2/3 mu k² / rho. With H = 0.5 m and mu = 1000 Pa·s that is 6.6 /s, so
-that 1.4 s take them down by 1e-4; what is left is what the method itself does.
+wave number k = pi / 2 H decay at the rate 2/3 mu k² / rho. With H = 0.5 m and mu = 1000 Pa·s it is 6.6 /s,
+so that 1.4 s take them down by 1e-4; what is left is what the method itself does.
 
-Two particles that share a cell see the same volumetric rate, so that the pressure is constant in a cell instead
-of linear: it is a staircase, ± rho g dx/4 about the exact line, which is 1.25 % of rho g H at 20 cells.
+Two particles that share a cell see the same volumetric rate, so that the pressure is constant in a cell and
+not linear: it is a staircase, ± rho g dx/4 about the exact line, which is 1.25 % of rho g H at 20 cells.
 """
 
 from __future__ import annotations
