@@ -20,16 +20,16 @@ import numpy as np
 from numba import njit, prange
 
 from .compile import kernel
-from .scatter import NODE
+from .scatter import CONTACT, NODE
 
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
 
 
 @kernel()
 def clear(nodes):
-    """All records to zero."""
+    """All records to zero, but for what is remembered of contact with a wall."""
     for i in prange(len(nodes)):
-        for q in range(nodes.shape[1]):
+        for q in range(CONTACT):
             nodes[i, q] = 0.0
 
 
@@ -116,48 +116,53 @@ def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
     """Boundary conditions on the velocity and, once ``solved``, on its change."""
     for a in range(dim):
         for side in range(2):
-            code = faces[a, side]
-            if code in (OPEN, PERIODIC):
-                continue
+            face = faces[a, side]
             inward, k = 1 - 2 * side, walls[a, side]
-            if not 0 <= k < shape[a]:
+            if face in (OPEN, PERIODIC) or not 0 <= k < shape[a]:
                 continue
             b, c = (a + 1) % 3, (a + 2) % 3
             for i in range(shape[b]):
                 for j in range(shape[c]):
                     node = nodes[k * strides[a] + i * strides[b] + j * strides[c]]
-                    if code == MIRROR:
-                        node[1 + a] = 0.0
-                        if solved:
-                            node[1 + dim + a] = 0.0
-                    elif code == STICK:
-                        for d in range(dim):
+                    if face == FRICTION:
+                        _touch(node, dim, a, inward, friction[a, side], solved)
+                        continue
+                    for d in range(dim):
+                        if d == a or face == STICK:
                             node[1 + d] = 0.0
                             if solved:
                                 node[1 + dim + d] = 0.0
-                    else:
-                        _rub(node, dim, a, inward, friction[a, side], solved)
 
 
 @njit(cache=True)
-def _rub(node, dim, a, inward, coefficient, solved):
-    """Coulomb's law at one node of a wall: no motion into it, drag at most coefficient × push."""
-    push = -inward * node[1 + a]  # what the wall must take up, as a change of velocity
+def _touch(node, dim, a, inward, coefficient, solved):
+    """Coulomb's law at a node of a wall that pushes and does not pull.
+
+    Whether a node is in contact is decided once a step, by the momentum equation: it is if the wall must take
+    up velocity towards it. Until the next decision its normal velocity is held, whatever its sign; a contact
+    that opened as soon as the mapped velocity turned would strain the last cell on approach but never on
+    departure, and with USF and MUSL feed energy in. Drag takes at most coefficient × push from the slip.
+    """
+    if not solved:
+        if node[CONTACT] > 0.0:
+            node[1 + a] = 0.0
+        return
+    push = -inward * node[1 + a]
+    node[CONTACT] = 1.0 if push > 0.0 else 0.0
     if push <= 0.0:
         return
-    if solved:
-        node[1 + dim + a] -= node[1 + a]
-        slip = 0.0
-        for d in range(dim):
-            if d != a:
-                slip += node[1 + d] ** 2
-        slip = math.sqrt(slip)
-        keep = 1.0 - min(1.0, coefficient * push / slip) if slip > 0.0 else 0.0
-        for d in range(dim):
-            if d != a:
-                node[1 + dim + d] -= (1.0 - keep) * node[1 + d]
-                node[1 + d] *= keep
+    node[1 + dim + a] -= node[1 + a]
     node[1 + a] = 0.0
+    slip = 0.0
+    for d in range(dim):
+        if d != a:
+            slip += node[1 + d] ** 2
+    slip = math.sqrt(slip)
+    lost = min(1.0, coefficient * push / slip) if slip > 0.0 else 0.0
+    for d in range(dim):
+        if d != a:
+            node[1 + dim + d] -= lost * node[1 + d]
+            node[1 + d] -= lost * node[1 + d]
 
 
 @kernel()

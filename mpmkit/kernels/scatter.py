@@ -2,7 +2,8 @@
 
 Particles are kept in slabs of cells along the first axis. Slabs of one colour touch no common node, so
 that each colour is scattered in parallel without a race, in an order that does not depend on the number of
-threads. A node is a record of ``NODE`` doubles: mass, momentum (dim), force (dim), padding.
+threads. A node is a record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` whether
+it touches a Coulomb wall.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from .compile import kernel
 
 NODE = 8
 """Doubles in a node's record: one cache line."""
+CONTACT = NODE - 1
 
 
 @kernel()

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..case.model import Case, Friction
 from ..kernels import nodes as node_kernels
-from ..kernels.scatter import NODE
+from ..kernels.scatter import CONTACT, NODE
 
 FACE_CODES = {
     "open": node_kernels.OPEN,
@@ -91,9 +91,10 @@ class Window:
         A particle's box reaches at most half a cell beyond its own cell.
         """
         grid = self.grid
+        contacts = self._contacts()
         low = np.where(grid.periodic, -GHOST, np.maximum(lowest_cell - 1, -GHOST))
         high = np.where(grid.periodic, grid.cells + GHOST, np.minimum(highest_cell + 2, grid.cells + GHOST))
-        # An image of a ghost lies one node inside the face; keep it in the window with the ghost.
+        # The image of a ghost lies one node inside the face, so the window that has the one has the other.
         size = [int(n) for n in high - low + 1] + [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
         self.shape = (size[0], size[1], size[2])
@@ -103,3 +104,20 @@ class Window:
         if count > len(self._store):
             self._store = np.zeros((count + count // 4, NODE))
         self.nodes = self._store[:count]
+        self.nodes[:, CONTACT] = 0.0
+        if contacts is not None:
+            self._restore_contacts(*contacts)
+
+    def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Which nodes touch a Coulomb wall, and the block's lower corner: all that outlives a window."""
+        if not hasattr(self, "nodes") or not (self.grid.faces == node_kernels.FRICTION).any():
+            return None
+        return self.lower, self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim]).copy()
+
+    def _restore_contacts(self, lower: np.ndarray, contacts: np.ndarray) -> None:
+        low = np.maximum(lower, self.lower)
+        high = np.minimum(lower + contacts.shape, self.lower + self.shape[: self.grid.dim])
+        if (low < high).all():
+            new = self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim])
+            common = [tuple(map(slice, low - start, high - start)) for start in (lower, self.lower)]
+            new[common[1]] = contacts[common[0]]
