@@ -143,14 +143,16 @@ def _touch(node, dim, a, inward, coefficient, solved):
     that opened as soon as the mapped velocity turned would strain the last cell on approach but never on
     departure, and with USF and MUSL feed energy in. Drag takes at most coefficient × push from the slip.
     """
+    contacts, this = int(node[CONTACT]), 1 << a  # a node in a corner may touch one wall and not the other
     if not solved:
-        if node[CONTACT] > 0.0:
+        if contacts & this:
             node[1 + a] = 0.0
         return
     push = -inward * node[1 + a]
-    node[CONTACT] = 1.0 if push > 0.0 else 0.0
     if push <= 0.0:
+        node[CONTACT] = contacts & ~this
         return
+    node[CONTACT] = contacts | this
     node[1 + dim + a] -= node[1 + a]
     node[1 + a] = 0.0
     slip = 0.0

@@ -2,8 +2,8 @@
 
 Particles are kept in slabs of cells along the first axis. Slabs of one colour touch no common node, so
 that each colour is scattered in parallel without a race, in an order that does not depend on the number of
-threads. A node is a record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` whether
-it touches a Coulomb wall.
+threads. A node is a record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the sum
+of 2^axis over the axes along which it touches a Coulomb wall.
 """
 
 from __future__ import annotations
