@@ -10,7 +10,7 @@ from mpmkit.kernels import domains, gather, locate, nodes, scatter, tensors
 from mpmkit.kernels.compile import CHUNK, chunk_count
 from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
 
-NODE = scatter.NODE
+NODE, CONTACT = scatter.NODE, scatter.CONTACT
 RELATIVE = 1e-13
 
 
@@ -228,6 +228,7 @@ def block(dim, seed=6):
     walls = np.array([[1, n - 2] for n in shape[:dim]], dtype=np.int64)
     records = rng.normal(size=(int(np.prod(shape)), NODE))
     records[:, 0] = rng.uniform(1, 2, len(records))
+    records[:, CONTACT] = rng.integers(0, 2**dim, len(records))
     return records, shape, strides, walls
 
 
@@ -338,14 +339,16 @@ def test_walls_outside_the_window_are_left_alone():
     np.testing.assert_array_equal(records, start)
 
 
-def test_clear():
+def test_clear_keeps_nothing_but_contact():
     records, *_ = block(3)
+    start = records.copy()
     nodes.clear(records)
-    assert (records == 0).all()
+    assert (records[:, :CONTACT] == 0).all()
+    np.testing.assert_array_equal(records[:, CONTACT], start[:, CONTACT])
 
 
-def constrained(velocity, change, faces, friction, walls, solved):
-    """Reference of the conditions on the faces, on arrays (nx, ny, nz, dim)."""
+def constrained(velocity, change, contact, faces, friction, walls, solved):
+    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` has a bit an axis."""
     dim = velocity.shape[-1]
     for axis in range(dim):
         for side in range(2):
@@ -359,20 +362,18 @@ def constrained(velocity, change, faces, friction, walls, solved):
                 v[...] = 0.0
                 if solved:
                     dv[...] = 0.0
+            elif code == FRICTION and not solved:
+                v[..., axis][plane(contact, axis, k) >> axis & 1 > 0] = 0.0
             elif code == FRICTION:
                 push = np.maximum(-inward * v[..., axis], 0.0)
                 into = push > 0
-                start = v.copy()
-                if solved:
-                    tangent = start.copy()
-                    tangent[..., axis] = 0.0
-                    slip = np.linalg.norm(tangent, axis=-1)
-                    keep = np.where(slip > friction[axis, side] * push, 1.0, 0.0)
-                    keep = keep * (1 - friction[axis, side] * push / np.where(slip > 0, slip, 1.0))
-                    end = keep[..., None] * tangent
-                    v[into] = end[into]
-                    dv[into] += (end - start)[into]
-                v[..., axis][into] = 0.0
+                tangent = v.copy()
+                tangent[..., axis] = 0.0
+                slip = np.linalg.norm(tangent, axis=-1)
+                keep = 1 - friction[axis, side] * push / np.where(slip > 0, slip, 1.0)
+                end = np.maximum(keep, 0.0)[..., None] * tangent
+                dv[into] += (end - v)[into]
+                v[into] = end[into]
 
 
 @pytest.mark.parametrize(
@@ -394,10 +395,11 @@ def test_momentum_equation_and_conditions_on_the_faces(faces):
     velocity = np.zeros((len(m), dim))
     velocity[full] = records[full, 1 : 1 + dim] / m[full, None]
     velocity = velocity.reshape(grid)
+    contact = records[:, CONTACT].reshape(shape).astype(int)
     force = records[:, 1 + dim : 1 + 2 * dim].copy()
 
     nodes.momentum_to_velocity(records, shape, strides, dim, faces, walls, friction)
-    constrained(velocity, np.zeros(grid), faces, friction, walls, solved=False)
+    constrained(velocity, np.zeros(grid), contact, faces, friction, walls, solved=False)
     inner = tuple(slice(1, n - 1) if n > 1 else slice(None) for n in shape)
     found = records.reshape(*shape, NODE)
     np.testing.assert_allclose(found[inner][..., 1 : 1 + dim], velocity[inner], rtol=0, atol=1e-14)
@@ -409,7 +411,7 @@ def test_momentum_equation_and_conditions_on_the_faces(faces):
     velocity = velocity + change
     nodes.solve_momentum(records, shape, strides, dim, faces, walls, friction, dt)
     full = full.reshape(shape)[..., None]  # an empty node keeps its force as change: no particle sees it
-    constrained(velocity, change, faces, friction, walls, solved=True)
+    constrained(velocity, change, contact, faces, friction, walls, solved=True)
     np.testing.assert_allclose(found[inner][..., 1 : 1 + dim], velocity[inner], rtol=0, atol=1e-14)
     np.testing.assert_allclose(
         (found[..., 1 + dim : 1 + 2 * dim] * full)[inner], (change * full)[inner], rtol=0, atol=1e-14
@@ -432,6 +434,7 @@ def test_friction_never_turns_the_slip_round():
     np.testing.assert_allclose(records[[0, 3, 6], 2], [0.0, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 3], [-0.5, -0.2, 0.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 4], [1.0, 1.0, 0.0], atol=1e-15)
+    assert (records[[0, 3, 6], CONTACT] == [2, 2, 0]).all()  # remembered as the bit of its axis
 
 
 # --- Tensors ------------------------------------------------------------------------------------------------

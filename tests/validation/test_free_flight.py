@@ -91,7 +91,7 @@ def test_wobbling_ball_keeps_mass_and_momentum(space, order):
         strain.append(simulation.measures(p)["strain_energy"])
     end = simulation.measures(p)
     assert max(strain) > 0.001 * start["kinetic_energy"]
-    assert end["total_mass"] == start["total_mass"]
+    assert end["total_mass"] == pytest.approx(start["total_mass"], rel=1e-14)
     assert simulation.operations.window.nodes[:, 0].sum() == pytest.approx(start["total_mass"], rel=1e-12)
     np.testing.assert_allclose(end["momentum"][kept], start["momentum"][kept], rtol=0, atol=1e-12 * scale)
     # What the grid sees of the energy is bounded: nothing feeds the swing.
@@ -99,7 +99,7 @@ def test_wobbling_ball_keeps_mass_and_momentum(space, order):
 
 
 def spin_once(order, cell_size):
-    """A disc that turns once: lost part of its angular momentum, and the largest change of a radius in cells."""
+    """A disc turns once: lost part of its angular momentum, and the largest change of a radius in cells."""
     simulation = flight("plane-strain", ("cpgimp", order, "flip"), cell_size=cell_size)
     p = simulation.particles
     centre, spin = np.array([1.0, 1.0]) - simulation.grid.lower, 5.0

@@ -63,6 +63,10 @@ def scene(
     )
 
 
+def rub(coefficient):
+    return {"kind": "friction", "coefficient": coefficient}
+
+
 def mean_velocity(simulation):
     p = simulation.particles
     return p.mass @ p.velocity / p.mass.sum()
@@ -71,10 +75,6 @@ def mean_velocity(simulation):
 def mean_position(simulation):
     p = simulation.particles
     return p.mass @ p.position / p.mass.sum()
-
-
-def rub(coefficient):
-    return {"kind": "friction", "coefficient": coefficient}
 
 
 # --- Slip ---------------------------------------------------------------------------------------------------
@@ -95,23 +95,29 @@ def test_slip_floor_takes_no_tangential_momentum(shape, order):
     assert mean_position(simulation)[1] == pytest.approx(2 * DX, abs=0.01 * DX)
 
 
-@pytest.mark.parametrize("face", ["x_min", "x_max", "z_min", "z_max"])
-@pytest.mark.parametrize("kind", ["slip", "symmetry", "stick", rub(0.3)], ids=str)
-def test_block_bounces_off_every_face(face, kind):
-    """Thrown straight at a wall, it comes back with most of its momentum, and alike from the four of them."""
+def throw(face, kind, order, until=0.5):
+    """A block thrown straight at a wall: its velocity along the normal, towards the wall, and its energy."""
     axis, sign = "xz".index(face[0]), -1.0 if face.endswith("min") else 1.0
     velocity = [0.0, 0.0]
     velocity[axis] = sign
-    simulation = scene([4, 4], [8, 8], [[0, 12], [0, 12]], {face: kind}, velocity=velocity, material=SOFT)
-    while simulation.time < 0.5:
+    simulation = scene([4, 4], [8, 8], [[0, 12], [0, 12]], {face: kind}, (0, 0), velocity, SOFT, order=order)
+    start = simulation.measures(simulation.particles)["kinetic_energy"]
+    while simulation.time < until:
         simulation.advance()
-    back = mean_velocity(simulation)
-    assert -1.0 < sign * back[axis] < -0.6
+    back, end = mean_velocity(simulation), simulation.measures(simulation.particles)
     assert abs(back[1 - axis]) < 1e-9
-    reference = scene([4, 4], [8, 8], [[0, 12], [0, 12]], {"z_min": kind}, velocity=[0, -1.0], material=SOFT)
-    while reference.time < 0.5:
-        reference.advance()
-    assert sign * back[axis] == pytest.approx(-mean_velocity(reference)[1], rel=1e-6)
+    return sign * back[axis], (end["kinetic_energy"] + end["strain_energy"]) / start
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("kind", ["slip", "symmetry", "stick", rub(0.3)], ids=str)
+def test_block_bounces_off_every_face(kind, order):
+    """It comes back with most of its momentum and no more energy than it had, alike from the four faces."""
+    found = [throw(face, kind, order) for face in ("x_min", "x_max", "z_min", "z_max")]
+    for speed, energy in found:
+        assert -1.0 < speed < -0.6
+        assert 0.7 < energy < 1.06  # USF feeds 3 to 4 % in, as it does without walls
+    np.testing.assert_allclose(found, [found[0]] * 4, rtol=1e-6)
 
 
 # --- Stick --------------------------------------------------------------------------------------------------
@@ -119,7 +125,7 @@ def test_block_bounces_off_every_face(face, kind):
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_layer_hangs_on_a_stick_floor(shape):
-    """An elastic layer, periodic along x, under a pull along x: u = (rho g / G)(H z - z²/2), tau = rho g (H - z)."""
+    """A layer, periodic along x, that is pulled along x: u = (rho g / G)(H z - z²/2), tau = rho g (H - z)."""
     cells, pull = 10, 0.5
     height, modulus = cells * DX, 1e5 / 2.6
     faces = {"x_min": "periodic", "x_max": "periodic", "z_min": "stick"}
@@ -140,7 +146,7 @@ def test_layer_hangs_on_a_stick_floor(shape):
     moved -= 3 * DX * np.rint(moved / (3 * DX))
     exact = 1000.0 * pull / modulus * (height * z - z**2 / 2)
     assert np.abs(moved - exact).max() < 0.02 * exact.max()
-    shear = p.stress[order, 4]
+    shear = p.stress[order, 5]  # of the axes 0 and 1 of the grid, here x and z
     assert np.abs(shear - 1000.0 * pull * (height - z)).max() < 0.04 * 1000.0 * pull * height
 
 
@@ -164,7 +170,7 @@ def test_nodes_of_a_wall_obey_it(kind):
 # --- Friction -----------------------------------------------------------------------------------------------
 
 
-def slide(angle, coefficient, shape="cpgimp", order="musl", until=0.6, space=2):
+def slide(angle, coefficient, shape="cpgimp", order="musl", until=0.6, space=2, rate=20.0):
     """Mean acceleration along the incline of a stiff block that starts at rest, and how far it came."""
     gravity = [G * math.sin(angle), -G * math.cos(angle)]
     lower, upper, domain = [2, 0], [8, 3], [[0, 60], [0, 7]]
@@ -173,7 +179,7 @@ def slide(angle, coefficient, shape="cpgimp", order="musl", until=0.6, space=2):
         lower, upper, domain = [2, 2, 0], [6, 4, 2], [[0, 60], [0, 6], [0, 6]]
     simulation = scene(
         lower, upper, domain, {"z_min": rub(coefficient)}, gravity, [0.0] * len(lower), STIFF, shape, order,
-        {"name": "blend", "rate": 20.0},
+        {"name": "blend", "rate": rate},
     )  # fmt: skip
     start = mean_position(simulation)[0]
     times, speeds = [], []
@@ -206,15 +212,19 @@ def test_block_slides_in_every_order(order):
     assert found == pytest.approx(G * (math.sin(angle) - 0.3 * math.cos(angle)), rel=0.03)
 
 
-@pytest.mark.parametrize(("degrees", "coefficient"), [(30, 0.7), (20, 0.5), (10, 0.3)])
+@pytest.mark.parametrize(("degrees", "coefficient"), [(30, 0.7), (30, 0.6), (20, 0.5), (10, 0.3)])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_block_sticks_on_an_incline(shape, degrees, coefficient):
-    """Where tan θ < µ it stays: no acceleration, and no creep beyond the elastic lean of the block."""
+    """Where tan θ < µ it stays, but for its elastic lean, once it has stopped to ring from being let go.
+
+    The ringing is damped hard, as PIC does: with FLIP a block close to the threshold works loose by it.
+    """
     angle = math.radians(degrees)
-    found, moved = slide(angle, coefficient, shape)
-    assert abs(found) < 0.005 * G
     fallen = G * math.sin(angle) * 0.6**2 / 2
-    assert 0 <= moved < 0.005 * fallen
+    _, soon = slide(angle, coefficient, shape, until=0.3, rate=1e5)
+    _, late = slide(angle, coefficient, shape, until=0.6, rate=1e5)
+    assert abs(late) < 0.005 * fallen
+    assert abs(late - soon) < 1e-4 * fallen
 
 
 def test_block_slides_in_three_dimensions():
@@ -241,14 +251,14 @@ def test_friction_wall_does_not_pull():
 def test_periodic_face_lets_a_body_through_unchanged(shape, order):
     faces = {f"{axis}_{side}": "periodic" for axis in "xz" for side in ("min", "max")}
     simulation = scene(
-        [3, 3], [6, 6], [[0, 8], [0, 8]], faces, velocity=(2.0, -1.5), shape=shape, order=order
+        [3, 3], [6, 6], [[0, 8], [0, 8]], faces, velocity=(2.0, -1.5), shape=shape, order=order, fraction=0.1
     )
     p = simulation.particles
     start = p.position[np.argsort(p.number)].copy()
-    while simulation.time < 1.0:
-        simulation.advance(at_most=1.0 - simulation.time)
+    while simulation.time < 0.3:
+        simulation.advance(at_most=0.3 - simulation.time)
     np.testing.assert_allclose(p.velocity, np.tile([2.0, -1.5], (len(p), 1)), rtol=0, atol=1e-10)
-    back = p.position[np.argsort(p.number)] - start - [2.0, -1.5]
+    back = p.position[np.argsort(p.number)] - start - 0.3 * np.array([2.0, -1.5])
     np.testing.assert_allclose(back - 8 * DX * np.rint(back / (8 * DX)), 0.0, rtol=0, atol=1e-10)
 
 
@@ -258,10 +268,12 @@ def test_open_face_does_nothing_until_the_body_leaves(shape, axis, direction):
     velocity = [0.0, 0.0]
     velocity[axis] = 2.0 * direction
     simulation = scene([4, 4], [8, 8], [[0, 12], [0, 12]], {}, velocity=velocity, shape=shape)
-    with pytest.raises(GuardStop, match="left the grid") as stopped:
+
+    def fly():
         while simulation.time < 1.0:
             simulation.advance()
-            deviation = simulation.particles.velocity - velocity
-            assert np.abs(deviation).max() < 1e-10
-    assert stopped.value.reason == "particle-outside"
+            assert np.abs(simulation.particles.velocity - velocity).max() < 1e-10
+
+    with pytest.raises(GuardStop, match="left the grid"):
+        fly()
     assert simulation.time == pytest.approx((4 + 0.25) * DX / 2.0, rel=0.05)
