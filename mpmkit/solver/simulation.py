@@ -100,7 +100,7 @@ class Simulation:
             guard = "particle-outside"
             where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
             what = f"left the grid at {where} m"
-            cure = "enlarge grid.domain, close that face, or reduce scheme.time_step.fraction if it was thrown out"
+            cure = "enlarge grid.domain, close that face, or, if it was thrown out, reduce the time step"
         raise GuardStop(
             guard,
             f"stopped at step {self.steps}, t = {self.time:.6g} s: particle {number} {what}; {cure}",

@@ -11,9 +11,9 @@ class USL(UpdateOrder):
 
     With FLIP its viscous limit is lower than that of the others. Its stress comes from the nodal velocity
     F V + dt a, with V the particles' and F <= 1 the filter of mapping to the nodes and back, and not from
-    F (V + dt a). With kappa = dt K / rho at the highest mode, lambda² + (kappa - 1) lambda + kappa (F - 1) = 0,
-    stable for kappa < 2 / (2 - F), where USF and MUSL have kappa F < 2. One particle in the middle of a cell
-    has F = 0: half of the limit; two have F = 1/4, 0.57 of it.
+    F (V + dt a). With kappa = dt K / rho at the highest mode, lambda² + (kappa - 1) lambda +
+    kappa (F - 1) = 0, stable for kappa < 2 / (2 - F), where USF and MUSL have kappa F < 2. One particle in
+    the middle of a cell has F = 0: half of the limit; two have F = 1/4, 0.57 of it.
     """
 
     name = "usl"
