@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 
 import numpy as np
 
@@ -22,9 +23,9 @@ class Upright(Shape):
         "m", "centre of the bottom disc; the origin unless told", default=None, min_length=2, max_length=3
     )
 
+    @abstractmethod
     def _radii(self) -> tuple[float, float]:
         """Radius at the bottom and at the top, m."""
-        raise NotImplementedError
 
     def _foot(self, space: Space) -> list[float]:
         return [0.0] * space.dim if self.base is None else self.base

@@ -34,32 +34,21 @@ def clear(nodes):
 
 
 @njit(cache=True)
-def _add_plane(nodes, shape, strides, axis, source, target, first, last, sign):
-    """Move slots first..last-1 of plane ``source`` onto plane ``target``, each times its ``sign``."""
-    if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
+def _transfer(nodes, shape, strides, axis, ghost, image, first, last, sign, folding):
+    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``."""
+    if not (0 <= ghost < shape[axis] and 0 <= image < shape[axis]):
         return
     b, c = (axis + 1) % 3, (axis + 2) % 3
     for i in range(shape[b]):
         for j in range(shape[c]):
             offset = i * strides[b] + j * strides[c]
-            src, dst = source * strides[axis] + offset, target * strides[axis] + offset
+            behind, before = nodes[ghost * strides[axis] + offset], nodes[image * strides[axis] + offset]
             for q in range(first, last):
-                nodes[dst, q] += sign[q] * nodes[src, q]
-                nodes[src, q] = 0.0
-
-
-@njit(cache=True)
-def _copy_plane(nodes, shape, strides, axis, source, target, first, last, sign):
-    """Copy slots first..last-1 of plane ``source`` to plane ``target``, each times its ``sign``."""
-    if not (0 <= source < shape[axis] and 0 <= target < shape[axis]):
-        return
-    b, c = (axis + 1) % 3, (axis + 2) % 3
-    for i in range(shape[b]):
-        for j in range(shape[c]):
-            offset = i * strides[b] + j * strides[c]
-            src, dst = source * strides[axis] + offset, target * strides[axis] + offset
-            for q in range(first, last):
-                nodes[dst, q] = sign[q] * nodes[src, q]
+                if folding:
+                    before[q] += sign[q] * behind[q]
+                    behind[q] = 0.0
+                else:
+                    behind[q] = sign[q] * before[q]
 
 
 @njit(cache=True)
@@ -74,41 +63,36 @@ def _parity(face, axis, dim, vectors):
 
 
 @njit(cache=True)
-def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
-    """Add what lies on ghost nodes to their images, slots first..last-1.
-
-    With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
-    """
-    for a in range(dim):
+def _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, folding):
+    for step in range(dim):
+        a = step if folding else dim - 1 - step  # filling undoes folding in the opposite order
         for side in range(2):
             face, wall, inward = faces[a, side], walls[a, side], 1 - 2 * side
             sign = _parity(face, a, dim, vectors)
             if face == PERIODIC:
                 cells = walls[a, 1] - walls[a, 0]
-                for depth in range(1 + side):  # the upper face is the lower one, seen a period later
+                for depth in range(1 + side):  # the upper wall itself is an image of the lower one
                     ghost = wall - inward * (1 - depth)
                     image = walls[a, 0] + (ghost - walls[a, 0]) % cells
-                    _add_plane(nodes, shape, strides, a, ghost, image, first, last, sign)
+                    _transfer(nodes, shape, strides, a, ghost, image, first, last, sign, folding)
             elif face != OPEN:
-                _add_plane(nodes, shape, strides, a, wall - inward, wall + inward, first, last, sign)
+                ghost, image = wall - inward, wall + inward
+                _transfer(nodes, shape, strides, a, ghost, image, first, last, sign, folding)
+
+
+@njit(cache=True)
+def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
+    """Add what lies on ghost nodes to their images, slots first..last-1, and clear the ghosts.
+
+    With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
+    """
+    _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, True)
 
 
 @njit(cache=True)
 def fill(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
-    for back in range(dim):
-        a = dim - 1 - back
-        for side in range(2):
-            face, wall, inward = faces[a, side], walls[a, side], 1 - 2 * side
-            sign = _parity(face, a, dim, vectors)
-            if face == PERIODIC:
-                cells = walls[a, 1] - walls[a, 0]
-                for depth in range(1 + side):
-                    ghost = wall - inward * (1 - depth)
-                    image = walls[a, 0] + (ghost - walls[a, 0]) % cells
-                    _copy_plane(nodes, shape, strides, a, image, ghost, first, last, sign)
-            elif face != OPEN:
-                _copy_plane(nodes, shape, strides, a, wall + inward, wall - inward, first, last, sign)
+    _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, False)
 
 
 @njit(cache=True)
