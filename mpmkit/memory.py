@@ -13,7 +13,7 @@ from .geometry import expected_count
 from .kernels.scatter import NODE
 from .output import PARTICLE_VARIABLES
 from .recorder import ROWS
-from .solver.scene import kept_box, particles_along_axes
+from .solver.scene import kept_box, particles_along_axes, tracks_deformation
 
 DOUBLE = 8
 INDEX = 4
@@ -50,13 +50,17 @@ def bytes_per_particle(case: Case) -> int:
     """State of a particle, its tables of weights, and its share of a sort."""
     dim, support = case.space_.dim, case.scheme.shape.support
     laws = [body.material.constitutive_law for body in case.bodies]
-    follows_stretch = case.scheme.shape.particle_domain == "stretch"
-    tracks = follows_stretch or any(law.needs_deformation_gradient for law in laws)
     number_mass_volumes_pressure_rate = 8
     vectors = 4 * dim
     gradient_and_stress = 9 + 6
     state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
-    doubles = number_mass_volumes_pressure_rate + vectors + gradient_and_stress + 9 * tracks + state
+    doubles = (
+        number_mass_volumes_pressure_rate
+        + vectors
+        + gradient_and_stress
+        + 9 * tracks_deformation(case)
+        + state
+    )
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
     return int(DOUBLE * (doubles + tables + SORTING) + body_and_base)

@@ -154,8 +154,11 @@ def _check(plugin: type[Plugin], kind: str) -> None:
     contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
-    if plugin.api_version != API_VERSION:
-        raise ValueError(f"it is written for API version {plugin.api_version}, this is version {API_VERSION}")
+    version = getattr(plugin, "api_version", None)
+    if version is None:
+        raise TypeError(f"{plugin.__name__} has no 'api_version'; this is version {API_VERSION}")
+    if version != API_VERSION:
+        raise ValueError(f"it is written for API version {version}, this is version {API_VERSION}")
     for attribute in ("name", "citation"):
         if not isinstance(getattr(plugin, attribute, None), str):
             raise TypeError(f"{plugin.__name__} has no '{attribute}'")

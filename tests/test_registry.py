@@ -19,6 +19,7 @@ class Slurry(GeneralisedNewtonianLaw):
     '''mu = tau0 / (γ̇ + γ̇0) + mu_p, a plastic regularised by a shear rate.'''
 
     name = "slurry"
+    api_version = 1
     citation = "nobody, nowhere (2024)"
 
     yield_stress: float = quantity("Pa", "yield stress", ge=0)
@@ -39,9 +40,10 @@ BROKEN = {
     "syntax error": ("def f(:\n", "SyntaxError"),
     "misspelt hook": (LAW.replace("def mpmkit_laws", "def mpmkit_law"), "did you mean mpmkit_laws?"),
     "API version": (
-        LAW.replace('name = "slurry"', 'name = "slurry"\n    api_version = 2'),
+        LAW.replace("api_version = 1", "api_version = 2"),
         "written for API version 2, this is version 1",
     ),
+    "no API version": (LAW.replace("    api_version = 1\n", ""), "Slurry has no 'api_version'"),
     "no subclass": (LAW.replace("return [Slurry]", "return [int]"), "not a subclass of ConstitutiveLaw"),
     "no list": (LAW.replace("return [Slurry]", "return Slurry"), "must return a list of classes"),
     "registers nothing": ("x = 1\n", "registers nothing"),
@@ -175,6 +177,7 @@ def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
 
         class Own(VolumetricTreatment):
             name = "{name}"
+            api_version = 1
             citation = "nobody"
 
             def average(self, ops, field):

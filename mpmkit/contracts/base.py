@@ -33,7 +33,8 @@ class Plugin(BaseModel):
 
     name: ClassVar[str]
     citation: ClassVar[str]
-    api_version: ClassVar[int] = API_VERSION
+    api_version: ClassVar[int]
+    """Version of the contracts that it is written for: its own number, so that an old one is noticed."""
 
     @model_validator(mode="before")
     @classmethod

@@ -18,7 +18,10 @@ class Operations(Protocol):
         """Particles to nodes: mass, momentum and, if asked, gravity and the internal force."""
 
     def map_forces(self) -> None:
-        """Particles to nodes: gravity and the internal force of the present stress alone."""
+        """Particles to nodes: gravity and the internal force of the present stress alone.
+
+        Adds to what is there: once a step, after ``map_to_grid(forces=False)``.
+        """
 
     def solve_momentum(self, dt: float) -> None:
         """Advance the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""

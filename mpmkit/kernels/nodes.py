@@ -3,7 +3,8 @@
 A mirror face (a slip wall or a symmetry plane) is exact: what particles put on the ghost nodes behind it is
 folded onto the image in front of it with the normal component reversed, as the mirrored scene would put it
 there, and after the momentum equation the ghosts get the image's velocity back. A periodic face folds and
-fills in the same way; a stick wall continues the velocity as an odd function, all components reversed.
+fills in the same way; a stick wall continues the velocity as an odd function, all components reversed. A
+Coulomb wall is a mirror behind the nodes that touch it and open behind the others.
 
 Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
@@ -34,14 +35,19 @@ def clear(nodes):
 
 
 @njit(cache=True)
-def _transfer(nodes, shape, strides, axis, ghost, image, first, last, sign, folding):
-    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``."""
+def _transfer(nodes, shape, strides, axis, ghost, image, contact, first, last, sign, folding):
+    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
+
+    Where ``contact`` is the index of a plane of nodes, only behind those that touch the wall along ``axis``.
+    """
     if not (0 <= ghost < shape[axis] and 0 <= image < shape[axis]):
         return
     b, c = (axis + 1) % 3, (axis + 2) % 3
     for i in range(shape[b]):
         for j in range(shape[c]):
             offset = i * strides[b] + j * strides[c]
+            if contact >= 0 and not int(nodes[contact * strides[axis] + offset, CONTACT]) & (1 << axis):
+                continue
             behind, before = nodes[ghost * strides[axis] + offset], nodes[image * strides[axis] + offset]
             for q in range(first, last):
                 if folding:
@@ -74,10 +80,11 @@ def _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, fol
                 for depth in range(1 + side):  # the upper wall itself is an image of the lower one
                     ghost = wall - inward * (1 - depth)
                     image = walls[a, 0] + (ghost - walls[a, 0]) % cells
-                    _transfer(nodes, shape, strides, a, ghost, image, first, last, sign, folding)
+                    _transfer(nodes, shape, strides, a, ghost, image, -1, first, last, sign, folding)
             elif face != OPEN:
                 ghost, image = wall - inward, wall + inward
-                _transfer(nodes, shape, strides, a, ghost, image, first, last, sign, folding)
+                contact = wall if face == FRICTION and vectors else -1
+                _transfer(nodes, shape, strides, a, ghost, image, contact, first, last, sign, folding)
 
 
 @njit(cache=True)

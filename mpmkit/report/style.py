@@ -14,7 +14,7 @@ DPI = 160
 MILLIMETRES = 1e3  # in a metre
 
 # Okabe and Ito's palette, told apart by colour-blind readers as well
-BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00"
+BLACK, ORANGE, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#009E73", "#0072B2", "#D55E00"
 GREY = "#767676"
 COLOUR_MAP = "viridis"
 

@@ -85,6 +85,13 @@ class Window:
     nodes: np.ndarray = field(init=False)
     _store: np.ndarray = field(init=False, default_factory=lambda: np.empty((0, NODE)))
 
+    def reach(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First and last node along each axis that particles in these cells can touch."""
+        grid = self.grid
+        low = np.where(grid.periodic, -GHOST, np.maximum(lowest_cell - 1, -GHOST))
+        high = np.where(grid.periodic, grid.cells + GHOST, np.minimum(highest_cell + 2, grid.cells + GHOST))
+        return low, high
+
     def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """Lay the window over the nodes that particles in these cells can touch, ghosts included.
 
@@ -92,8 +99,7 @@ class Window:
         """
         grid = self.grid
         contacts = self._contacts()
-        low = np.where(grid.periodic, -GHOST, np.maximum(lowest_cell - 1, -GHOST))
-        high = np.where(grid.periodic, grid.cells + GHOST, np.minimum(highest_cell + 2, grid.cells + GHOST))
+        low, high = self.reach(lowest_cell, highest_cell)
         # The image of a ghost lies one node inside the face, so the window that has the one has the other.
         size = [int(n) for n in high - low + 1] + [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)

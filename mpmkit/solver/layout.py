@@ -7,9 +7,11 @@ more than one cell out of its own, so that sorting is rare and costs nothing in 
 from __future__ import annotations
 
 import numpy as np
+import psutil
 
 from ..kernels.compile import CHUNK
 from ..kernels.locate import LOST, STRAYED, locate, wrap
+from ..kernels.scatter import NODE
 from .grid import Grid, Window
 from .particles import Particles
 
@@ -18,6 +20,18 @@ SLAB_WIDTH = 5
 from 2 below to 2 above the slab's cells and one more; with 5 cells two slabs of one colour never meet."""
 DRIFT = 2
 """Cells that a particle may drift out of the box of the last sort, along the axes that have no slabs."""
+
+
+class Scattered(Exception):
+    """The material has spread over more nodes than fit into memory.
+
+    Attributes:
+        particle: index of the one farthest out.
+    """
+
+    def __init__(self, particle: int) -> None:
+        super().__init__(f"particle at index {particle} is too far out")
+        self.particle = particle
 
 
 class Layout:
@@ -59,6 +73,9 @@ class Layout:
             return int(np.argmin(inside))
         cell = (particles.position * (1 / grid.cell_size)).astype(np.int64)
         low, high = cell.min(axis=0), cell.max(axis=0)
+        self._low, self._high = low - DRIFT, high + DRIFT
+        self._require_memory(cell)
+        self.window.cover(self._low, self._high)
         slab = cell[:, 0] // SLAB_WIDTH
         self.first_slab = int(slab.min())
         count = int(slab.max()) - self.first_slab + 1
@@ -74,7 +91,12 @@ class Layout:
         for g, group in enumerate(particles.groups):
             edges = np.searchsorted(slab[group.part], np.arange(count + 1))
             self.slabs[g] = group.part.start + edges
-        self._low, self._high = low - DRIFT, high + DRIFT
-        self.window.cover(self._low, self._high)
         self.sorts += 1
         return None
+
+    def _require_memory(self, cell: np.ndarray) -> None:
+        """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
+        low, high = self.window.reach(self._low, self._high)
+        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > psutil.virtual_memory().available:
+            away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)
+            raise Scattered(int(np.argmax(away)))

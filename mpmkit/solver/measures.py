@@ -15,10 +15,8 @@ from .particles import Particles
 
 @dataclass(frozen=True)
 class Measures:
-    """Measures a scene. Lengths include the particle domains; extensive ones are of the whole modelled body.
-
-    A symmetric half counts double in the spread alone: masses, momenta and energies are those of the part
-    that is simulated.
+    """Measures a scene. Lengths include the particle domains and what a symmetry plane has cut off; masses,
+    momenta and energies are of the part that is simulated.
     """
 
     case: Case
@@ -29,13 +27,12 @@ class Measures:
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
-        axis = np.zeros(grid.dim - 1)
-        if not case.space_.radial:
-            low = (particles.position - particles.half_size).min(axis=0)[:-1]
-            high = (particles.position + particles.half_size).max(axis=0)[:-1]
-            axis = np.where([_cut(case, grid, a) for a in range(grid.dim - 1)], 0.0, (low + high) / 2)
-        top = float((particles.position + particles.half_size)[:, -1].max())
-        return cls(case, grid, top, axis)
+        low = (particles.position - particles.half_size).min(axis=0)
+        high = (particles.position + particles.half_size).max(axis=0)
+        planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
+        middle = (low + high)[:-1] / 2
+        axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
+        return cls(case, grid, float(high[-1]), axis)
 
     def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
         """All scalar measures by the names of the history's variables."""
@@ -75,8 +72,8 @@ class Measures:
                 continue
             high = float((p.position[:, a] + p.half_size[:, a]).max())
             low = float((p.position[:, a] - p.half_size[:, a]).min())
-            mirrored = self.case.space_.radial or _cut(self.case, self.grid, a)
-            diameters.append(2 * high if mirrored else high - low)
+            plane = _symmetry_plane(self.case, self.grid, a)
+            diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
 
     def _height(self, p: Particles, of: slice | np.ndarray) -> float:
@@ -90,8 +87,14 @@ class Measures:
         return np.einsum("pi,pi->p", offset, offset) <= self.grid.cell_size**2
 
 
-def _cut(case: Case, grid: Grid, axis: int) -> bool:
-    return case.grid.faces.get(f"{grid.axes[axis]}_min") == "symmetry"
+def _symmetry_plane(case: Case, grid: Grid, axis: int) -> float | None:
+    """Where a plane or axis of symmetry cuts an axis of the grid, m from its corner; None if none does."""
+    if case.space_.radial and axis == 0:
+        return 0.0
+    for side, position in (("min", 0.0), ("max", float(grid.extent[axis]))):
+        if case.grid.faces.get(f"{grid.axes[axis]}_{side}") == "symmetry":
+            return position
+    return None
 
 
 def cauchy_stress(p: Particles) -> np.ndarray:
@@ -101,11 +104,16 @@ def cauchy_stress(p: Particles) -> np.ndarray:
     return stress
 
 
+def mean_pressure(p: Particles) -> np.ndarray:
+    """Minus the mean normal stress, Pa, ``(n,)``; a solid has it too, though no equation of state."""
+    return p.pressure - p.stress[:, :3].sum(axis=1) / 3
+
+
 PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
     "position": lambda p, grid: p.position + grid.lower,
     "velocity": lambda p, grid: p.velocity,
     "stress": lambda p, grid: cauchy_stress(p),
-    "pressure": lambda p, grid: p.pressure,
+    "pressure": lambda p, grid: mean_pressure(p),
     "volume_ratio": lambda p, grid: p.volume_ratio,
 }
 """Particle fields that a history can keep."""
@@ -116,7 +124,7 @@ def frame_fields(p: Particles) -> dict[str, np.ndarray]:
     return {
         "velocity": p.velocity,
         "speed": np.sqrt(np.einsum("pi,pi->p", p.velocity, p.velocity)),
-        "pressure": p.pressure,
+        "pressure": mean_pressure(p),
         "half_size": p.half_size,
         "volume_ratio": p.volume_ratio,
         "shear_rate": shear_rate(p.velocity_gradient),

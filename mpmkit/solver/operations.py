@@ -115,15 +115,15 @@ class SceneOperations:
         tensors.stretch_volume(rate, dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
-        self._follow_domains()
         for group in p.groups:
             part = group.part
             if group.law.uses_equation_of_state:
                 eos = group.equation_of_state
                 p.pressure[part] = eos.pressure(p.volume_ratio[part], group.density, group.sound_speed)
-            else:  # such a law integrates F; its volume must be that of the same F
+            elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
+        self._follow_domains()
         treated = self.scheme.volumetric.average(self, p.pressure)
         if treated is not p.pressure:
             p.pressure[...] = treated

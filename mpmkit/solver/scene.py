@@ -36,6 +36,7 @@ def make_particles(case: Case) -> Particles:
         (number, body) for m in materials for number, body in enumerate(case.bodies) if body.material == m
     ]
     samples = [_sample_body(case, number) for number, _ in bodies]
+    _refuse_overlaps(case, bodies, samples)
     counts = [len(found.volume) for found in samples]
 
     lower, _ = kept_box(case)
@@ -92,6 +93,17 @@ def _group(case: Case, material: Material, part: slice) -> Group:
             for name, variable in law.state.items()
         },
     )
+
+
+def _refuse_overlaps(case: Case, bodies: list[tuple[int, Body]], samples: list[Sample]) -> None:
+    for (number, _), found in zip(bodies, samples, strict=True):
+        for other, body in bodies:
+            inside = 0 if other >= number else int(body.shape.contains(found.position, case.space_).sum())
+            if inside:
+                raise CaseError(
+                    f"bodies.{number}.shape has {inside} of its particles inside bodies.{other}.shape; "
+                    "bodies may touch but not overlap"
+                )
 
 
 def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 import numpy as np
 
 from ..case.model import Case
@@ -9,6 +11,7 @@ from ..errors import GuardStop
 from ..kernels.compile import CHUNK
 from ..kernels.locate import largest_speed
 from .grid import Grid
+from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
 from .scene import make_particles
@@ -53,7 +56,8 @@ class Simulation:
 
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""
-        return warnings(self.case.scheme.time_step, self.limits, self.time_step)
+        scheme = self.case.scheme
+        return warnings(scheme.time_step, self.limits, self.time_step, scheme.order.viscous_fraction)
 
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.
@@ -64,7 +68,10 @@ class Simulation:
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
             self.choose_time_step()
-        lost = self.operations.begin()
+        try:
+            lost = self.operations.begin()
+        except Scattered as error:
+            self._stop(error.particle, scattered=True)
         if lost is not None:
             self._stop(lost)
         dt = min(self.time_step, at_most)
@@ -83,7 +90,7 @@ class Simulation:
         if not (p.volume_ratio > 0).all():
             self._stop(int(np.argmin(p.volume_ratio)))
 
-    def _stop(self, index: int) -> None:
+    def _stop(self, index: int, scattered: bool = False) -> NoReturn:
         """Raise the GuardStop that fits what has become of a particle."""
         p, axes = self.particles, self.grid.axes
         number, position = int(p.number[index]), p.position[index] + self.grid.lower
@@ -96,6 +103,10 @@ class Simulation:
             guard = "volume-ratio"
             what = f"has a volume ratio of {p.volume_ratio[index]:.3g}, which is not positive"
             cure = "the run diverged, reduce scheme.time_step.fraction"
+        elif scattered:
+            guard = "scattered"
+            what = "is so far from the others that the nodes between them do not fit into memory"
+            cure = "if it was thrown out, reduce scheme.time_step.fraction"
         else:
             guard = "particle-outside"
             where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))

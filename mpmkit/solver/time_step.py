@@ -60,13 +60,17 @@ def choose_step(settings: TimeStep, found: Limits, viscous_fraction: float) -> t
     return kept.get(name, math.inf), name
 
 
-def warnings(settings: TimeStep, found: Limits, step: float) -> list[str]:
-    """One sentence for every limit that the step exceeds because the case ignores it."""
+def warnings(settings: TimeStep, found: Limits, step: float, viscous_fraction: float) -> list[str]:
+    """One sentence for every limit that is too small for the step because the case ignores it."""
+    borne = {"acoustic": 1.0, "viscous": viscous_fraction, "advective": 1.0}
     return [
         f"the time step of {step:.3g} s exceeds the {name} limit of {limit:.3g} s {step / limit:.3g}-fold, "
         f"as scheme.time_step.ignore asks"
+        if step > limit
+        else f"the time step of {step:.3g} s is {step / limit:.3g} of the {name} limit of {limit:.3g} s, "
+        f"of which the order bears {borne[name]:g}; it was ignored as scheme.time_step.ignore asks"
         for name, limit in found.as_dict().items()
-        if name in settings.ignore and step > limit
+        if name in settings.ignore and step > borne[name] * limit
     ]
 
 

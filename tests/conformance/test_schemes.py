@@ -175,7 +175,7 @@ def test_uniform_motion_strains_nothing(space, scheme):
 
 
 def run_with_threads(threads, make, steps):
-    numba.set_num_threads(min(threads, numba.config.NUMBA_NUM_THREADS))
+    numba.set_num_threads(threads)
     simulation = make()
     shake(simulation)
     for _ in range(steps):

@@ -181,7 +181,7 @@ def test_mirrored_particles_have_mirrored_weights(shape):
 def test_thread_count_changes_no_bit(shape):
     position, half_size = cloud(3, n=5000)
     single = tables(shape, position, half_size)
-    numba.set_num_threads(min(2, numba.config.NUMBA_NUM_THREADS))
+    numba.set_num_threads(2)
     double = tables(shape, position, half_size)
     for one, two in zip(single, double, strict=True):
         np.testing.assert_array_equal(one, two)

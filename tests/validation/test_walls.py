@@ -233,10 +233,15 @@ def test_block_slides_in_three_dimensions():
     assert found == pytest.approx(G * (math.sin(angle) - 0.3 * math.cos(angle)), rel=0.03)
 
 
-def test_friction_wall_does_not_pull():
-    """A block that is lifted off leaves the wall as it leaves no wall at all."""
-    free = scene([2, 1], [6, 5], [[0, 12], [0, 30]], {}, (0.0, 2.0), (0.0, 0.5))
-    wall = scene([2, 0], [6, 4], [[0, 12], [0, 30]], {"z_min": rub(0.5)}, (0.0, 2.0), (0.0, 0.5))
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("overlap", [0.0, 0.15])
+def test_friction_wall_does_not_pull(overlap, order):
+    """A block that is lifted off leaves the wall as it leaves no wall at all, boxes over the wall or not."""
+    motion = {"gravity": (0.0, 2.0), "velocity": (0.0, 0.5), "order": order}
+    free = scene([2, 1], [6, 5], [[0, 12], [0, 30]], {}, **motion)
+    wall = scene([2, 0], [6, 4], [[0, 12], [0, 30]], {"z_min": rub(0.5)}, **motion)
+    for block in (free, wall):
+        block.particles.position[:, 1] -= overlap * DX
     for _ in range(100):
         free.advance()
         wall.advance()

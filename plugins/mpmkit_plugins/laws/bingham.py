@@ -14,6 +14,7 @@ class Bingham(GeneralisedNewtonianLaw):
     """
 
     name = "bingham"
+    api_version = 1
     citation = "Bingham, Fluidity and Plasticity (1922); Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)

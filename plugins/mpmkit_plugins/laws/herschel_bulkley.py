@@ -16,6 +16,7 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
     """
 
     name = "herschel-bulkley"
+    api_version = 1
     citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)

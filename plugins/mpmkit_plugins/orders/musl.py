@@ -10,6 +10,7 @@ class MUSL(UpdateOrder):
     """
 
     name = "musl"
+    api_version = 1
     citation = "Sulsky, Zhou & Schreyer, Comput. Phys. Commun. 87 (1995) 236-252"
 
     def step(self, ops: Operations, dt: float) -> None:

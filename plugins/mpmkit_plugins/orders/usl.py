@@ -17,6 +17,7 @@ class USL(UpdateOrder):
     """
 
     name = "usl"
+    api_version = 1
     citation = "Bardenhagen, J. Comput. Phys. 180 (2002) 383-403"
     viscous_fraction = 0.5
 

@@ -12,6 +12,7 @@ class Own(VolumetricTreatment):
     """
 
     name = "own"
+    api_version = 1
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:

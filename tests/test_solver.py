@@ -1,0 +1,137 @@
+"""What a simulation does with a scene beside its physics: groups, symmetry, guards, general mappings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import psutil
+import pytest
+
+import mpmkit
+from mpmkit.contracts import ConstitutiveLaw, Motion, StateVariable, hookimpl, quantity
+from mpmkit.errors import CaseError, GuardStop
+from mpmkit.registry import Registered, Registry, installed
+
+FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 1.0, "sound_speed": 10.0}
+RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
+
+
+class Hypoelastic(ConstitutiveLaw):
+    """σ̇ = K tr(L) I: pressure of its own, from a state of its own, and no deformation gradient."""
+
+    name = "hypoelastic"
+    api_version = 1
+    citation = "a test"
+    uses_equation_of_state = False
+    state = {"mean_stress": StateVariable("Pa", "mean stress")}
+
+    bulk_modulus: float = quantity("Pa", "bulk modulus K", gt=0)
+
+    def update_stress(
+        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+    ) -> None:
+        state["mean_stress"] += dt * self.bulk_modulus * np.trace(motion.velocity_gradient, axis1=1, axis2=2)
+        stress[:, :3] = state["mean_stress"][:, None]
+
+    def wave_speed(self, density: float, sound_speed: float | None) -> float:
+        return float(np.sqrt(self.bulk_modulus / density))
+
+
+@hookimpl
+def mpmkit_laws():
+    return [Hypoelastic]
+
+
+def with_hypoelastic() -> Registry:
+    built_in = [entry for kind in installed().plugins.values() for entry in kind.values()]
+    return Registry([*built_in, Registered("law", Hypoelastic, "test", "0", "hypoelastic")], [])
+
+
+def box(lower, upper, material=FLUID, **more):
+    return {"shape": {"kind": "box", "lower": lower, "upper": upper}, "material": material, **more}
+
+
+def scene(bodies, faces=None, domain=None, registry=None, **scheme) -> mpmkit.Simulation:
+    case = {
+        "space": "plane-strain",
+        "until": 1.0,
+        "gravity": [0.0, 0.0],
+        "grid": {
+            "cell_size": 0.1,
+            "domain": domain or {"x": [0, 2], "z": [0, 2]},
+            "faces": faces or {},
+        },
+        "bodies": bodies,
+        "scheme": scheme,
+    }
+    return mpmkit.Simulation(mpmkit.parse_case(case, registry=registry))
+
+
+def test_law_with_its_own_pressure_needs_no_deformation_gradient():
+    """Squeezed between walls that it flies at, it answers with its own state, of each particle."""
+    material = {"law": "hypoelastic", "density": 1000.0, "bulk_modulus": 1e5}
+    simulation = scene(
+        [box([0.5, 0.5], [1.0, 1.0], material, velocity=[-1.0, 0.0])],
+        {"x_min": "slip"},
+        registry=with_hypoelastic(),
+        order="musl",
+    )
+    p = simulation.particles
+    while simulation.time < 0.55:
+        simulation.advance()
+    assert p.deformation_gradient is None
+    np.testing.assert_array_equal(p.stress[:, 0], p.groups[0].state["mean_stress"])
+    assert p.stress[:, 0].min() < -1e3
+    assert (p.volume_ratio < 1).any()
+
+
+@pytest.mark.parametrize("side", ["min", "max"])
+def test_a_symmetry_plane_on_either_side_doubles_the_spread(side):
+    lower, upper = ([0.0, 0.0], [0.3, 0.4]) if side == "min" else ([1.7, 0.0], [2.0, 0.4])
+    simulation = scene([box(lower, upper)], {f"x_{side}": "symmetry"})
+    measures = simulation.measures(simulation.particles)
+    assert measures["spread_diameter"] == pytest.approx(0.6)
+    assert measures["axis_height"] == pytest.approx(0.4)
+
+
+def test_bodies_that_overlap_are_refused_and_those_that_touch_are_not():
+    scene([box([0.5, 0.5], [1.0, 1.0]), box([1.0, 0.5], [1.5, 1.0], RUBBER)])
+    with pytest.raises(CaseError, match=r"bodies\.1\.shape has 20 of its particles inside bodies\.0\.shape"):
+        scene([box([0.5, 0.5], [1.0, 1.0]), box([0.9, 0.5], [1.5, 1.0], RUBBER)])
+
+
+def test_a_particle_thrown_far_out_stops_the_run_before_memory_does(monkeypatch):
+    simulation = scene([box([0.5, 0.5], [1.0, 1.0])], domain={"x": [0, 2e6], "z": [0, 2e6]})
+    simulation.advance()
+    simulation.particles.position[7] = [1.9e6, 1.9e6]
+    number = simulation.particles.number[7]
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: type("Memory", (), {"available": 2**30}))
+    with pytest.raises(GuardStop, match=rf"particle {number} is so far from the others") as stop:
+        simulation.advance()
+    assert (stop.value.guard, stop.value.particle, stop.value.step) == ("scattered", number, 1)
+
+
+def test_a_particle_without_volume_stops_the_run():
+    simulation = scene([box([0.5, 0.5], [1.0, 1.0])])
+    simulation.advance()
+    simulation.particles.volume_ratio[3] = -0.2
+    with pytest.raises(GuardStop, match=r"has a volume ratio of -0\.2, which is not positive") as stop:
+        simulation.check()
+    assert stop.value.particle == simulation.particles.number[3]
+
+
+@pytest.mark.parametrize("shape", list(installed().of_kind("shape")))
+@pytest.mark.parametrize("faces", [{}, {"x_min": "slip", "z_min": "slip"}], ids=["open", "slip"])
+def test_general_mappings_average_and_reproduce(shape, faces):
+    """A constant comes back as itself, with walls or without, and the average is that of the measure."""
+    simulation = scene([box([0.0, 0.0], [1.0, 1.0])], faces, shape=shape)
+    operations, p = simulation.operations, simulation.particles
+    operations.begin()
+    for mass_weighted in (False, True):
+        nodal = operations.particles_to_nodes(np.full(len(p), 3.5), mass_weighted)
+        np.testing.assert_allclose(operations.nodes_to_particles(nodal), 3.5, rtol=1e-13)
+    inside = (np.abs(p.position - 0.5) < 0.3).all(axis=1)
+    nodal = operations.particles_to_nodes(2.0 + p.position[:, 0])
+    found = operations.nodes_to_particles(nodal)
+    np.testing.assert_allclose(found[inside], 2.0 + p.position[inside, 0], rtol=0, atol=1e-12)
