@@ -69,7 +69,7 @@ class Recorder:
         simulation, particles = self.simulation, self.simulation.particles
         values = simulation.measures(particles) | {"time_step": simulation.time_step}
         by_number = np.argsort(particles.number)
-        fields = {
+        fields: dict[str, np.ndarray] = {
             name: PARTICLE_FIELDS[name](particles, simulation.grid)[by_number]
             for name in simulation.case.output.particle_history
         }

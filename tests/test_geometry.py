@@ -215,7 +215,7 @@ def test_a_mesh_is_filled_as_the_sphere_that_it_resembles(tmp_path, name):
     particles, reference = fill(mesh, SOLID), fill(BALL, SOLID)
     assert len(particles.volume) == pytest.approx(len(reference.volume), rel=0.01)
     assert particles.volume.sum() == pytest.approx(mesh.volume(SOLID), rel=1e-12)
-    # On planes of symmetry rays meet corners and edges of the icosphere; none may leak.
+    # Lattice points in the planes of symmetry, where the icosphere has corners and edges.
     points = np.random.default_rng(2).integers(-12, 13, (2000, 3)) * 0.01 + [0, 0, 0.1]
     distance = np.linalg.norm(points - [0, 0, 0.1], axis=1)
     clear = abs(distance - 0.1) > 0.0005
@@ -254,6 +254,19 @@ def test_a_shell_within_another_is_a_cavity(tmp_path, inward):
     assert mesh.contains(points, SOLID).tolist() == [False, True, False, True]
 
 
+@pytest.mark.parametrize("far", [0.0, 1e3])
+def test_a_point_on_a_meshs_surface_is_inside_and_one_just_off_it_is_not(tmp_path, far):
+    trimesh = pytest.importorskip("trimesh")
+    file = write(tmp_path / "ball.ply", *icosphere(1.0, 3))
+    mesh = Mesh(kind="mesh", file=file, translate=[far, far, far])
+    ball = trimesh.load(file)
+    points, triangles = trimesh.sample.sample_surface(ball, 2000, seed=1)
+    for off, inside in {-4e-6: True, -1e-6: True, 1e-6: True, 4e-6: False, 1e-3: False}.items():
+        moved = points + off * ball.face_normals[triangles] + far
+        assert (mesh.contains(moved, SOLID) == inside).all()
+    assert mesh.contains(np.empty((0, 3)), SOLID).shape == (0,)
+
+
 def test_bad_meshes_are_refused_by_name(tmp_path):
     vertices, faces = icosphere(0.1, 1)
     flat = BLOCK_CORNERS * [1, 1, 0]
@@ -283,8 +296,9 @@ def test_a_rewritten_mesh_is_read_again(tmp_path, monkeypatch):
         assert mesh.bounds(SOLID)[1] == pytest.approx([radius] * 3, rel=1e-6)
 
 
-def test_without_trimesh_a_mesh_says_what_to_install(tmp_path, monkeypatch):
+@pytest.mark.parametrize("library", ["igl", "trimesh"])
+def test_without_its_libraries_a_mesh_says_what_to_install(tmp_path, monkeypatch, library):
     file = write(tmp_path / "ball.stl", *icosphere(1.0, 1))
-    monkeypatch.setitem(sys.modules, "trimesh", None)
+    monkeypatch.setitem(sys.modules, library, None)
     with pytest.raises(CaseError, match=r"pip install 'mpmkit\[mesh\]'"):
         Mesh(kind="mesh", file=file).volume(SOLID)

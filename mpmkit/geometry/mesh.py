@@ -15,8 +15,6 @@ from ..contracts.base import quantity
 from ..errors import CaseError
 from ..spaces import Space
 from .base import Shape
-from .orientation import outward
-from .parity import inside_surface
 
 
 class Mesh(Shape):
@@ -64,12 +62,20 @@ class Mesh(Shape):
         return lower, upper
 
     def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
-        # The tolerance is the test's own, 1e-6: the file may hold its corners in single precision.
-        triangles = np.asarray(self._surface().triangles)
-        inside = np.zeros(len(points), dtype=bool)
-        for start in range(0, len(points), _CHUNK):
-            inside[start : start + _CHUNK] = inside_surface(points[start : start + _CHUNK], triangles)
-        return inside
+        import igl
+
+        surface = self._surface()
+        # From the middle of the surface, because the winding number is computed in single precision: it is
+        # then in doubt only within about 1e-7 of the extent from the surface, where the distance decides.
+        middle = surface.bounds.mean(axis=0)
+        vertices, faces = surface.vertices - middle, np.asarray(surface.faces)
+        points = points - middle
+        inside = igl.fast_winding_number(vertices, faces, points) > 0.5
+        # Not the caller's 1e-9, but 1e-6: the file may hold its corners in single precision, too.
+        tolerance = _TOLERANCE * float(np.ptp(surface.bounds, axis=0).max())
+        unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
+        distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
+        return inside | (distance <= tolerance)  # farther away the distance is nan
 
     def _measure(self, space: Space) -> float:
         return self._volume(space)
@@ -78,17 +84,20 @@ class Mesh(Shape):
         return float(self._surface().volume)
 
 
-_CHUNK = 1 << 20
+_TOLERANCE = 1e-6
+"""Part of a mesh's largest extent by which a point may miss its surface and still be on it."""
 
 
 @lru_cache(maxsize=8)
 def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> Any:
     """The surface as a ``trimesh.Trimesh``, in metres, normals outwards; ``shown`` names it in errors."""
     try:
+        import igl  # noqa: F401
         import trimesh
     except ImportError:
         raise CaseError(
-            f"the mesh's file is {shown}, but bodies given as a mesh need trimesh: pip install 'mpmkit[mesh]'"
+            f"the mesh's file is {shown}, but bodies given as a mesh need libigl and trimesh: "
+            "pip install 'mpmkit[mesh]'"
         ) from None
     vertices, faces = _read(path, shown)
     surface = trimesh.Trimesh(vertices, faces, process=False)
@@ -103,10 +112,30 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
             "each edge must belong to exactly two triangles"
         )
     vertices = np.asarray(surface.vertices) * scale + shift
-    closed = trimesh.Trimesh(vertices, outward(vertices, np.asarray(surface.faces)), process=False)
+    closed = trimesh.Trimesh(vertices, _outward(vertices, np.asarray(surface.faces)), process=False)
     if not closed.volume > 0:
         raise CaseError(f"the mesh's file is {shown}, but its surface encloses no volume")
     return closed
+
+
+def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """The faces (t, 3) of a closed surface, turned so that their normals point out of the solid.
+
+    A shell in an odd number of others is the wall of a cavity and encloses a negative volume.
+    """
+    import igl
+    import trimesh
+
+    faces, shells = igl.bfs_orient(faces)  # neighbours now agree
+    count = int(shells.max()) + 1
+    for shell in range(count):
+        own = shells == shell
+        inward = trimesh.Trimesh(vertices, faces[own], process=False).volume < 0
+        # Each shell around adds ±1, however it is turned: the sum is odd if their number is.
+        depth = igl.winding_number(vertices, faces[~own], vertices[faces[own][0, 0]]) if count > 1 else 0
+        if inward != (round(depth) % 2 == 1):
+            faces[own] = faces[own][:, ::-1]
+    return faces
 
 
 def _read(path: str, shown: str) -> tuple[np.ndarray, np.ndarray]:

@@ -45,10 +45,7 @@ class Measures:
             volume = p.initial_volume[part]
             strain += float(np.sum(volume * group.law.strain_energy(p.motion(group), group.state)))
             if group.law.uses_equation_of_state:
-                energy = group.equation_of_state.energy(
-                    p.volume_ratio[part], group.density, group.sound_speed
-                )
-                compressive += float(np.sum(volume * energy))
+                compressive += float(np.sum(volume * group.compressive_energy(p.volume_ratio[part])))
         gravity = self.case.gravity_vector
         return {
             "spread_diameter": self._spread(p),

@@ -118,9 +118,9 @@ class SceneOperations:
         for group in p.groups:
             part = group.part
             if group.law.uses_equation_of_state:
-                eos = group.equation_of_state
-                p.pressure[part] = eos.pressure(p.volume_ratio[part], group.density, group.sound_speed)
+                p.pressure[part] = group.pressure(p.volume_ratio[part])
             elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
+                assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
         self._follow_domains()

@@ -22,7 +22,18 @@ class Group:
 
     @property
     def wave_speed(self) -> float:
+        """Fastest wave of the law, m/s."""
         return self.law.wave_speed(self.density, self.sound_speed)
+
+    def pressure(self, volume_ratio: np.ndarray) -> np.ndarray:
+        """Pressure of the equation of state, Pa; for a law that uses one."""
+        assert self.sound_speed is not None
+        return self.equation_of_state.pressure(volume_ratio, self.density, self.sound_speed)
+
+    def compressive_energy(self, volume_ratio: np.ndarray) -> np.ndarray:
+        """Energy of the equation of state per initial volume, J/m³; for a law that uses one."""
+        assert self.sound_speed is not None
+        return self.equation_of_state.energy(volume_ratio, self.density, self.sound_speed)
 
 
 @dataclass

@@ -45,6 +45,7 @@ class NeoHookean(ConstitutiveLaw):
 
     def strain_energy(self, motion: Motion, state: Mapping[str, np.ndarray]) -> np.ndarray:
         F, log_J = motion.deformation_gradient, np.log(motion.volume_ratio)
+        assert F is not None  # the law asks for it
         G, lame = self.shear_modulus, self.lame
         return G / 2 * (np.einsum("pij,pij->p", F, F) - 3) - G * log_J + lame / 2 * log_J**2
 
