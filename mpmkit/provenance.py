@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import platform
+from typing import Any
 
 import numba
 import numpy as np
 
 from . import __version__
 from .case.model import Case
+from .recorder import FRAMES, ROWS
 from .registry import installed
+from .solver.scene import particles_along_axes
 
 
 def plugins_used(case: Case) -> list[dict[str, str]]:
@@ -33,6 +36,18 @@ def plugins_used(case: Case) -> list[dict[str, str]]:
     return found
 
 
+def resolved(case: Case) -> dict[str, Any]:
+    """The case with everything filled in that it leaves to a default."""
+    data = case.model_dump(mode="json")
+    data["gravity"] = case.gravity_vector.tolist()
+    data["output"]["history_interval"] = case.output.history_interval or case.until / ROWS
+    data["output"]["frame_interval"] = case.output.frame_interval or case.until / FRAMES
+    for body, entry in zip(case.bodies, data["bodies"], strict=True):
+        entry["particles_per_cell"] = list(particles_along_axes(body, case.space_.dim))
+        entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
+    return data
+
+
 def attributes(case: Case, threads: int) -> dict[str, str]:
     """Global attributes of a history; what is structured is JSON."""
     machine = {
@@ -43,7 +58,7 @@ def attributes(case: Case, threads: int) -> dict[str, str]:
     }
     return {
         "title": case.name,
-        "case": json.dumps(case.model_dump(mode="json")),
+        "case": json.dumps(resolved(case)),
         "versions": json.dumps({"mpmkit": __version__, "numpy": np.__version__, "numba": numba.__version__}),
         "plugins": json.dumps(plugins_used(case)),
         "machine": json.dumps(machine),

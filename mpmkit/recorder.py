@@ -10,20 +10,20 @@ from .solver.measures import PARTICLE_FIELDS, frame_fields
 from .solver.simulation import Simulation
 
 COLUMNS = (
-    Variable("spread_diameter", "m", "diameter of the material, particle domains included"),
-    Variable("height", "m", "largest height of the material above the lower face of the grid"),
-    Variable("axis_height", "m", "height of the material within one cell of its axis"),
-    Variable("slump", "m", "initial height minus height on the axis"),
-    Variable("kinetic_energy", "J", "kinetic energy of the particles"),
-    Variable("potential_energy", "J", "potential energy in gravity, zero at the origin"),
-    Variable("strain_energy", "J", "elastic energy of the laws that have one"),
-    Variable("compressive_energy", "J", "energy stored by the equation of state"),
-    Variable("total_mass", "kg", "mass of all particles"),
-    Variable("momentum", "kg m/s", "momentum of all particles", component=True),
-    Variable("max_speed", "m/s", "largest particle speed"),
-    Variable("time_step", "s", "length of the time step"),
+    Variable("spread_diameter", "m", "spread diameter"),
+    Variable("height", "m", "largest height"),
+    Variable("axis_height", "m", "height on the axis"),
+    Variable("slump", "m", "slump"),
+    Variable("kinetic_energy", "J", "kinetic energy"),
+    Variable("potential_energy", "J", "potential energy"),
+    Variable("strain_energy", "J", "elastic energy"),
+    Variable("compressive_energy", "J", "compressive energy"),
+    Variable("total_mass", "kg", "total mass"),
+    Variable("momentum", "kg m/s", "momentum", component=True),
+    Variable("max_speed", "m/s", "largest speed"),
+    Variable("time_step", "s", "time step"),
 )
-"""The scalars and vectors of every history."""
+"""The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""
 
 ROWS, FRAMES = 400, 20
 """Rows and frames of a run whose case does not say how often."""

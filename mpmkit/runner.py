@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from .case.model import Case
 from .errors import GuardStop
 from .memory import require_memory
-from .output import RunDirectory, open_log, summarise
-from .provenance import attributes, plugins_used
+from .output import RunDirectory, open_log, summarise, write_json
+from .provenance import attributes, plugins_used, resolved
 from .recorder import Recorder
 from .solver.simulation import Simulation
 from .threads import use_threads
@@ -73,13 +73,21 @@ def run(
     directory = RunDirectory(Path(out), overwrite)
     directory.claim()
     with open_log(directory.log):
-        directory.write_json(directory.case, case.model_dump(mode="json"))
-        recorder = _execute(simulation, directory, threads, listen)
-        if case.output.report:
-            from .report import write_report
-
-            write_report(directory.path)
+        write_json(directory.case, resolved(case))
+        try:
+            recorder = _execute(simulation, directory, threads, listen)
+        except GuardStop:
+            _report(case, directory)
+            raise
+        _report(case, directory)
     return recorder.history.dataset()
+
+
+def _report(case: Case, directory: RunDirectory) -> None:
+    if case.output.report:
+        from .report import write_report
+
+        write_report(directory.path)
 
 
 def _execute(
@@ -110,8 +118,10 @@ def _execute(
 
 
 def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None) -> None:
-    until, start = simulation.case.until, clock.monotonic()
-    told = start
+    until = simulation.case.until
+    recorder.record()
+    simulation.advance(until)  # the first step loads or compiles the kernels: the clock starts behind it
+    start = told = clock.monotonic()
     recorder.record()
     while until - simulation.time > 1e-9 * until:
         simulation.advance(until - simulation.time)
@@ -126,7 +136,8 @@ def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None
 
 
 def _progress(simulation: Simulation, elapsed: float) -> Progress:
-    until, done = simulation.case.until, simulation.time / simulation.case.until
+    until = simulation.case.until
+    done = simulation.time / until
     speed = simulation.steps * len(simulation.particles) / elapsed
     return Progress(simulation.time, until, simulation.steps, speed, elapsed * (1 - done) / done)
 
@@ -146,4 +157,4 @@ def _conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
             stopped_because=ended,
             plugins=plugins_used(simulation.case),
         )
-        directory.write_json(directory.summary, summary)
+        write_json(directory.summary, summary)

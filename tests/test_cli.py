@@ -142,16 +142,24 @@ def test_python_m_mpmkit_and_what_it_loads():
     assert done.stdout.endswith("[]\n")
 
 
-def test_an_interrupted_run_keeps_its_history(case, tmp_path):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_keeps_its_history(case, tmp_path, sent):
     command = [sys.executable, "-m", "mpmkit", "run", case, "--until", "1e4"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # Started in the background, this process may ignore the signal, and its children with it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
     directory = tmp_path / "runs" / "tiny"
     try:
         deadline = time.monotonic() + 60
         while not (directory / "history.nc").exists() and time.monotonic() < deadline:
             time.sleep(0.05)
         time.sleep(0.5)
-        os.kill(process.pid, signal.SIGINT)
+        os.kill(process.pid, sent)
         _, said = process.communicate(timeout=30)
     finally:
         process.kill()

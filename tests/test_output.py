@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import shutil
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -22,6 +23,7 @@ from mpmkit.output import (
     read_frame,
     read_frames,
     summarise,
+    write_json,
 )
 from mpmkit.output import history as history_module
 from mpmkit.output.variables import tensor_components
@@ -218,9 +220,9 @@ class TestRunDirectory:
         run.claim()
         for path in (run.case, run.history, run.summary, run.log):
             path.write_text("old")
-        for path in (run.frames, run.report):
-            path.mkdir()
-            (path / "old").write_text("old")
+        for path in (run.frames / "frame_000010.vtu", run.frames / "frames.pvd", run.report / "outline.png"):
+            path.parent.mkdir(exist_ok=True)
+            path.write_text("old")
 
     def test_is_made(self, tmp_path):
         run = RunDirectory(tmp_path / "runs" / "slump")
@@ -237,20 +239,22 @@ class TestRunDirectory:
 
     def test_overwriting_deletes_what_a_run_writes_and_nothing_else(self, tmp_path):
         self.fill(RunDirectory(tmp_path / "run"))
-        (tmp_path / "run" / "notes.txt").write_text("the user's own")
+        own = ["notes.txt", "frames/mine.vtu"]
+        for name in own:
+            (tmp_path / "run" / name).write_text("the user's own")
         (tmp_path / "run" / ".history.nc.partial").write_text("left by a killed process")
         RunDirectory(tmp_path / "run", overwrite=True).claim()
-        assert [path.name for path in (tmp_path / "run").iterdir()] == ["notes.txt"]
+        left = [path for path in (tmp_path / "run").rglob("*") if path.is_file()]
+        assert sorted(left) == sorted(tmp_path / "run" / name for name in own)
 
     def test_overwriting_does_not_follow_links(self, tmp_path):
         self.fill(RunDirectory(tmp_path / "run"))
         (tmp_path / "kept").mkdir()
-        (tmp_path / "kept" / "precious").write_text("")
-        (tmp_path / "run" / "frames" / "old").unlink()
-        (tmp_path / "run" / "frames").rmdir()
+        (tmp_path / "kept" / "frame_000010.vtu").write_text("")
+        shutil.rmtree(tmp_path / "run" / "frames")
         (tmp_path / "run" / "frames").symlink_to(tmp_path / "kept")
         RunDirectory(tmp_path / "run", overwrite=True).claim()
-        assert (tmp_path / "kept" / "precious").exists()
+        assert (tmp_path / "kept" / "frame_000010.vtu").exists()
 
     @pytest.mark.parametrize("name", ["thesis.tex", "case.json", "run.log"])
     def test_what_does_not_look_like_a_run_is_left_alone(self, tmp_path, name):
@@ -273,15 +277,15 @@ class TestRunDirectory:
             "list": [np.float64(1.5), np.inf],
             "a": np.arange(2),
         }
-        run.write_json(run.summary, data)
+        write_json(run.summary, data)
         text = run.summary.read_text()
         assert json.loads(text) == {"t500": None, "steps": 3, "list": [1.5, None], "a": [0, 1]}
         assert text.startswith('{\n  "t500"')
         with pytest.raises(TypeError):
-            run.write_json(run.summary, {"bad": object()})
+            write_json(run.summary, {"bad": object()})
         assert run.summary.read_text() == text
         with pytest.raises(OutputError):
-            run.write_json(tmp_path / "nowhere" / "summary.json", {})
+            write_json(tmp_path / "nowhere" / "summary.json", {})
 
 
 class TestSummary:

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.image import imread
 
 from mpmkit.errors import CaseError
-from mpmkit.output import FrameWriter, History, RunDirectory, Variable, read_frames, summarise
+from mpmkit.output import FrameWriter, History, RunDirectory, Variable, read_frames, summarise, write_json
 from mpmkit.report import write_report
 from mpmkit.report.outline import chosen_frames, floor_of
 from mpmkit.report.run_results import read_results
@@ -53,7 +53,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
         },
         "output": {"snapshot_times": [0.0, 0.1, 0.2, 0.5, 60.0]},
     }
-    run.write_json(run.case, case)
+    write_json(run.case, case)
     history = History(
         [
             Variable("spread_diameter", "m", "spread diameter"),
@@ -98,7 +98,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
             frames.write(time, step, fields, position)
     history.write(run.history)
     numbers = {"particles": len(start), "steps": len(times), "wall_time": 2.0}
-    run.write_json(
+    write_json(
         run.summary, summarise(history.dataset(), **numbers, stopped_because="end of the run", plugins={})
     )
     return path

@@ -25,6 +25,8 @@ MOST_OUTPUTS = 100_000
 def check(case: Case) -> None:
     """Raise ValueError with one sentence for the first rule that is broken."""
     _check_vector("gravity", case.gravity, case)
+    if case.space_.radial and case.gravity_vector[0] != 0:
+        raise ValueError(f"gravity is {case.gravity}; along r it must be 0 in an axisymmetric scene")
     _check_domain(case)
     _check_faces(case)
     for number, body in enumerate(case.bodies):

@@ -104,6 +104,6 @@ def show_summary(directory: Path) -> None:
     width = max(len(label) for _, label, *_ in FIGURES)
     for key, label, scale, unit, digits in FIGURES:
         value = summary[key]
-        figure = "never" if value is None else f"{value * scale:,.{digits}f}{unit}"
+        figure = "–" if value is None else f"{value * scale:,.{digits}f}{unit}"
         click.echo(f"{label:<{width}}  {figure}")
     click.echo(f"results in {directory}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from datetime import timedelta
 
 import click
 
@@ -37,8 +38,8 @@ def command(
         *(f"  {name:<12} {limit:.4g} s" for name, limit in cost["limits"].items() if limit is not None),
         *(f"sound speed    {speed:.4g} m/s" for speed in speeds),
         f"steps          {cost['steps']:,}",
-        f"memory         {cost['memory_bytes'] / 2**20:,.0f} MiB",
-        f"expected time  {cost['expected_seconds']:,.0f} s on this machine",
+        f"memory         {max(1, round(cost['memory_bytes'] / 2**20)):,} MiB",
+        f"expected time  {timedelta(seconds=max(1, round(cost['expected_seconds'])))} on this machine",
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
     click.echo("\n".join(lines))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import click
@@ -36,9 +37,8 @@ def command(
 
     from ..runner import run
 
-    with np.errstate(
-        all="ignore"
-    ):  # a run that diverges is told of by its guard, not by every array on the way
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
+    with np.errstate(all="ignore"):  # a run that diverges is told of by its guard, not by every array
         if quiet:
             run(loaded, directory, overwrite=overwrite, threads=threads)
             return

@@ -2,6 +2,7 @@
 
 from .frames import FrameWriter, read_frame, read_frames
 from .history import History
+from .json_file import write_json
 from .log import open_log
 from .run_directory import RunDirectory
 from .summary import first_crossing, summarise
@@ -18,4 +19,5 @@ __all__ = [
     "read_frame",
     "read_frames",
     "summarise",
+    "write_json",
 ]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from ..errors import CaseError
 from .atomic import cannot_write
-from .json_file import write_json
+from .frames import LIST_NAME
+
+PARTIAL = ".*.partial"
+"""What a killed process may have left."""
 
 
 class RunDirectory:
@@ -63,10 +65,6 @@ class RunDirectory:
         except OSError as error:
             raise cannot_write(self.path, error) from error
 
-    def write_json(self, path: Path, data: Any) -> None:
-        """Write a JSON file of the run, with null for NaN; see ``json_file.write_json``."""
-        write_json(path, data)
-
     def _refuse_if_precious(self) -> None:
         if not self.overwrite:
             raise CaseError(
@@ -85,9 +83,15 @@ class RunDirectory:
         return self.history, self.summary, self.frames, self.report, self.log
 
     def _clear(self) -> None:
-        """Delete what a run writes and nothing else; case and log last, by which a run is known."""
-        for path in (*self.path.glob(".*.partial"), *self._results[:-1], self.case, self.log):
-            if path.is_dir() and not path.is_symlink():
-                shutil.rmtree(path)
+        """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
+        written = [self.history, self.summary, *self.path.glob(PARTIAL)]
+        for directory, pattern in ((self.frames, "frame_*.vtu"), (self.report, "*.png")):
+            if directory.is_symlink():
+                written.append(directory)
             else:
-                path.unlink(missing_ok=True)
+                written += [*directory.glob(pattern), *directory.glob(PARTIAL), directory / LIST_NAME]
+        for path in (*written, self.case, self.log):
+            path.unlink(missing_ok=True)
+        for directory in (self.frames, self.report):
+            with suppress(OSError):  # it is not there, or something of the user's is in it
+                directory.rmdir()

@@ -74,9 +74,9 @@ class Measures:
         return float(np.mean(diameters)) if diameters else np.nan
 
     def _height(self, p: Particles, of: slice | np.ndarray) -> float:
-        """Top of the material above the grid's lower face, m; 0 where there is none."""
+        """Top of the material above the grid's lower face, m; not a number where there is none."""
         tops = (p.position[:, -1] + p.half_size[:, -1])[of]
-        return float(tops.max()) if len(tops) else 0.0
+        return float(tops.max()) if len(tops) else np.nan
 
     def _near_axis(self, p: Particles) -> np.ndarray:
         """Particles within one cell of the axis of the body."""
