@@ -47,7 +47,7 @@ def main() -> None:
     zero = mpmkit.Simulation(mpmkit.load_case(path, [*COARSE, "grid.faces.z_min=open"]))
     hold_floor(zero)
 
-    sheet, axes = figure("Slump, free-slip floor, axisymmetric, 10 mm, the seed's scheme")
+    sheet, axes = figure("Slump, free-slip floor, axisymmetric, 10 mm, the paper's scheme")
     plot_reference(axes)
     axes.plot(TIMES, np.multiply(spread(mirror), 1e3), color="#0072B2", label="ghosts mirror the floor")
     axes.plot(TIMES, np.multiply(spread(zero), 1e3), color="#D55E00", label="ghosts held at zero")

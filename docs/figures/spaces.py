@@ -13,7 +13,7 @@ COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}']
 
 
 def main() -> None:
-    sheet, axes = figure("Slump, free-slip floor, 10 mm, the seed's scheme")
+    sheet, axes = figure("Slump, free-slip floor, 10 mm, the paper's scheme")
     plot_reference(axes)
     for name, overrides, label, style in (
         ("slump", COARSE, "axisymmetric, 900 particles", {"color": "#0072B2"}),

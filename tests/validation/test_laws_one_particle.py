@@ -1,4 +1,4 @@
-"""One particle in a known motion: the stress of the seed's concrete, against its formula."""
+"""One particle in a known motion: the stress of the slump test's concrete, against its formula."""
 
 from __future__ import annotations
 

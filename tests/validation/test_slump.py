@@ -44,7 +44,7 @@ def test_quarter_model_agrees_with_axisymmetric():
 
 
 def test_coarse_slump_follows_the_reference_while_it_flows():
-    """The seed's settings at 10 mm stay within 4 % of the incompressible solution for half a second."""
+    """The paper's settings at 10 mm stay within 4 % of the incompressible solution for half a second."""
     times = [0.1, 0.2, 0.3, 0.4, 0.5]
     case = mpmkit.load_case(ROOT / "cases" / "slump.json", COARSE)
     assert spread(case, times) == pytest.approx(reference(times), rel=0.04)

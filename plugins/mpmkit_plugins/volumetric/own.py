@@ -6,9 +6,10 @@ from mpmkit.contracts import Operations, VolumetricTreatment, hookimpl
 
 
 class Own(VolumetricTreatment):
-    """Every particle keeps its own volumetric rate and pressure: the seed's choice, and it locks.
+    """Every particle keeps its own volumetric rate and pressure: the paper's choice.
 
-    With more particles than a cell has volumetric modes, near incompressibility leaves a cell no freedom.
+    Near incompressibility each particle of a cell puts a constraint on it. Where the velocity must vary within
+    the cell, as on a stick floor, that leaves it no freedom, and the material locks (docs/findings.md).
     """
 
     name = "own"
