@@ -21,6 +21,7 @@ COLUMNS = (
     Variable("total_mass", "kg", "total mass"),
     Variable("momentum", "kg m/s", "momentum", component=True),
     Variable("max_speed", "m/s", "largest speed"),
+    Variable("fractured_fraction", "1", "part of the volume in boxes longer than a cell"),
     Variable("time_step", "s", "time step"),
 )
 """The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""

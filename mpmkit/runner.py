@@ -138,7 +138,7 @@ def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None
 def _progress(simulation: Simulation, elapsed: float) -> Progress:
     until = simulation.case.until
     done = simulation.time / until
-    speed = simulation.steps * len(simulation.particles) / elapsed
+    speed = simulation.particle_steps / elapsed
     return Progress(simulation.time, until, simulation.steps, speed, elapsed * (1 - done) / done)
 
 
@@ -152,6 +152,7 @@ def _conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
         summary = summarise(
             recorder.history.dataset(),
             particles=len(simulation.particles),
+            particle_steps=simulation.particle_steps,
             steps=simulation.steps,
             wall_time=wall_time,
             stopped_because=ended,

@@ -128,8 +128,8 @@ def test_general_mappings_average_and_reproduce(shape, faces):
     simulation = scene([box([0.0, 0.0], [1.0, 1.0])], faces, shape=shape)
     operations, p = simulation.operations, simulation.particles
     operations.begin()
-    for mass_weighted in (False, True):
-        nodal = operations.particles_to_nodes(np.full(len(p), 3.5), mass_weighted)
+    for measure in ("mass", "volume", "initial-volume"):
+        nodal = operations.particles_to_nodes(np.full(len(p), 3.5), measure)
         np.testing.assert_allclose(operations.nodes_to_particles(nodal), 3.5, rtol=1e-13)
     inside = (np.abs(p.position - 0.5) < 0.3).all(axis=1)
     nodal = operations.particles_to_nodes(2.0 + p.position[:, 0])

@@ -155,6 +155,9 @@ class Scheme(Model):
     order: UpdateOrder
     velocity: VelocityUpdate
     volumetric: VolumetricTreatment
+    splitting: bool = Field(
+        default=False, description="whether particles whose box is drawn longer than a cell are split in two"
+    )
     time_step: TimeStep = TimeStep()
 
 
@@ -263,8 +266,8 @@ def case_model(registry: Registry) -> type[Case]:
         __doc__=Scheme.__doc__,
         shape=_choice(registry.of_kind("shape"), "cpgimp"),
         order=_choice(registry.of_kind("order"), "usl"),
-        velocity=_choice(registry.of_kind("velocity"), "flip"),
-        volumetric=_choice(registry.of_kind("volumetric"), "own"),
+        velocity=_choice(registry.of_kind("velocity"), "apic"),
+        volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
     )
     return create_model(
         "Case",

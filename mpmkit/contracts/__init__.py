@@ -1,9 +1,11 @@
 """What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
 
 from .base import API_VERSION, Plugin, quantity
+from .elastoviscoplastic import ElastoviscoplasticLaw
 from .equation_of_state import EquationOfState
+from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
-from .law import REST_SHEAR_RATE, ConstitutiveLaw, GeneralisedNewtonianLaw, Motion, StateVariable
+from .law import ConstitutiveLaw, Motion, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
 from .shape import ShapeFunction
@@ -15,6 +17,7 @@ __all__ = [
     "KINDS",
     "REST_SHEAR_RATE",
     "ConstitutiveLaw",
+    "ElastoviscoplasticLaw",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
     "Motion",

@@ -1,4 +1,4 @@
-"""Contracts of a constitutive law: the full one, and the short one for generalised Newtonian fluids."""
+"""Contract of a constitutive law, at its full length."""
 
 from __future__ import annotations
 
@@ -9,11 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..kernels.tensors import shear_rate, viscous_stress
 from .base import Plugin
-
-REST_SHEAR_RATE = 1e-12
-"""Shear rate, 1/s, that stands for rest, so that a law written as in the paper divides by no zero."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +40,8 @@ class Motion:
     """Initial density, kg/m³."""
     deformation_gradient: np.ndarray | None = None
     """``(n, 3, 3)``, F, if the law asks for it."""
+    sound_speed: float | None = None
+    """Sound speed of the equation of state, m/s; None for a law that has its own pressure."""
 
 
 class ConstitutiveLaw(Plugin):
@@ -62,7 +60,10 @@ class ConstitutiveLaw(Plugin):
     def update_stress(
         self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``."""
+        """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``.
+
+        On entry ``stress`` holds what the law wrote last, in the axes of then; it is zero at the beginning.
+        """
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         """Fastest wave, m/s, for the acoustic limit of the time step."""
@@ -74,28 +75,8 @@ class ConstitutiveLaw(Plugin):
         """Largest viscosity, Pa s, between rest and a shear rate, for the viscous limit of the time step."""
         return 0.0
 
-    def strain_energy(self, motion: Motion, state: Mapping[str, np.ndarray]) -> np.ndarray | float:
-        """Elastic energy per initial volume, J/m³, ``(n,)``; zero for a fluid."""
+    def strain_energy(
+        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+    ) -> np.ndarray | float:
+        """Elastic energy of shape per initial volume, J/m³, ``(n,)``; zero for a viscous fluid."""
         return 0.0
-
-
-class GeneralisedNewtonianLaw(ConstitutiveLaw):
-    """A fluid given by its apparent viscosity alone: sigma = -p I + 2 mu(γ̇) (D - tr(D)/3 I).
-
-    This is eq. 6 of Ferreira et al. with the tensor that the printed equation lost, and
-    γ̇ = √(2 D':D') with the deviatoric rate of deformation D'.
-    """
-
-    @abstractmethod
-    def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
-        """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
-
-    def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
-    ) -> None:
-        rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
-        viscous_stress(motion.velocity_gradient, self.apparent_viscosity(rate), stress)
-
-    def largest_viscosity(self, largest_shear_rate: float) -> float:
-        rates = np.geomspace(REST_SHEAR_RATE, max(largest_shear_rate, 1.0), 400)
-        return float(np.max(self.apparent_viscosity(rates)))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
+
+Measure = Literal["mass", "volume", "initial-volume"]
 
 
 class Operations(Protocol):
@@ -13,6 +15,13 @@ class Operations(Protocol):
     Shape functions are evaluated once, at the positions of the start of the step, and every operation of
     the step uses them.
     """
+
+    cell_size: float
+    """m, side of a cell."""
+    acoustic_time: float
+    """s, a cell over the fastest wave: how long a sound takes to be seen by the next node."""
+    mean_speed: float
+    """m/s, root mean square of the particles' velocity, weighted with mass, a few steps ago at most."""
 
     def map_to_grid(self, *, forces: bool = True) -> None:
         """Particles to nodes: mass, momentum and, if asked, gravity and the internal force."""
@@ -42,8 +51,16 @@ class Operations(Protocol):
         """x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ, with ṽ the new nodal velocity at the particle
         and Δṽ what the step changed in it. Used by velocity updates."""
 
-    def particles_to_nodes(self, values: np.ndarray, mass_weighted: bool = False) -> np.ndarray:
-        """Shape-function average of a particle field, weighted with volume or mass: ``(n,)`` to nodes."""
+    def update_affine(self) -> None:
+        """Nodes to particles: the affine part of the present nodal velocity, C = Σ N v (x_node - x̄)ᵀ D⁻¹ with
+        D = Σ N (x_node - x̄)(x_node - x̄)ᵀ. Used by velocity updates with ``affine = True``."""
+
+    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        """Average of a particle field around each node, Σ w N f / Σ w N: ``(n,)`` to nodes.
+
+        The weight w is the mass or the volume; particles whose law has a pressure of its own have no part in
+        averages by volume.
+        """
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         """Interpolate a nodal field at the particles."""

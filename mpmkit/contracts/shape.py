@@ -22,7 +22,8 @@ class ShapeFunction(Plugin):
 
     @property
     def particle_domain(self) -> str:
-        """How half-sizes follow the deformation: ``fixed``, ``stretch`` (U_ii) or ``volume`` (J^(1/dim))."""
+        """How half-sizes follow the deformation: ``strain`` (normal strain along each axis), ``fixed``,
+        ``stretch`` (U_ii) or ``volume`` (J^(1/dim))."""
         return "fixed"
 
     @abstractmethod

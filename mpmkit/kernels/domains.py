@@ -10,19 +10,34 @@ from .compile import CHUNK, chunk_count, kernel
 
 
 @kernel()
-def follow_volume(volume_ratio, initial_half_size, largest, half_size):
-    """l = l0 J^(1/dim), at most ``largest``."""
+def follow_strain(L, dt, half_size):
+    """l_i ← l_i (1 + Δt D_ii): the box follows the normal strain along each axis.
+
+    What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
+    keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave
+    the box as it is, where the stretch U_ii grows with shear, and F_ii shrinks as the material turns.
+    """
+    n, dim = half_size.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            for a in range(dim):
+                half_size[p, a] *= 1 + dt * L[p, a, a]
+
+
+@kernel()
+def follow_volume(volume_ratio, initial_half_size, half_size):
+    """l = l0 J^(1/dim)."""
     n, dim = half_size.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             factor = volume_ratio[p] ** (1 / dim)
             for a in range(dim):
-                half_size[p, a] = min(initial_half_size[p, a] * factor, largest)
+                half_size[p, a] = initial_half_size[p, a] * factor
 
 
 @kernel()
-def follow_stretch(F, initial_half_size, largest, half_size):
-    """l_i = l0_i U_ii with the right stretch U = √(FᵀF), at most ``largest`` (Charlton et al. 2017).
+def follow_stretch(F, initial_half_size, half_size):
+    """l_i = l0_i U_ii with the right stretch U = √(FᵀF) (Charlton et al. 2017).
 
     The root in closed form (Hoger & Carlson 1984): with the invariants i1, i2, i3 of U,
     U = (i1 i3 I + (i1² - i2) C - C²) / (i1 i2 - i3).
@@ -55,4 +70,4 @@ def follow_stretch(F, initial_half_size, largest, half_size):
             squares = (xx * xx + xy * xy + xz * xz, xy * xy + yy * yy + yz * yz, xz * xz + yz * yz + zz * zz)
             for axis in range(dim):
                 stretch = (i1 * i3 + (i1 * i1 - i2) * diagonal[axis] - squares[axis]) / (i1 * i2 - i3)
-                half_size[p, axis] = min(initial_half_size[p, axis] * stretch, largest)
+                half_size[p, axis] = initial_half_size[p, axis] * stretch

@@ -6,6 +6,9 @@ from numba import prange
 
 from .compile import CHUNK, chunk_count, kernel
 
+LEAST_MOMENT = 0.125
+"""Least second moment of the weights of cpGIMP with two particles an axis, in cells²."""
+
 
 @kernel()
 def advance_2d(nodes, strides, lower, base, weight, hoop, dt, flip, position, velocity):
@@ -153,6 +156,27 @@ def gradient_3d(nodes, strides, lower, base, weight, gradient, hoop, L):
             L[p, 0, 0], L[p, 0, 1], L[p, 0, 2] = l00, l01, l02
             L[p, 1, 0], L[p, 1, 1], L[p, 1, 2] = l10, l11, l12
             L[p, 2, 0], L[p, 2, 1], L[p, 2, 2] = l20, l21, l22
+
+
+@kernel()
+def affine_slopes(weight, cell_size, slope):
+    """1-D tables that give the affine part of a nodal field: N (x_node - x̄) / D, D = Σ N (x_node - x̄)², 1/m.
+
+    D, which nearly vanishes where a small box is at a node, counts as ``LEAST_MOMENT`` at the least: a
+    particle that barely reaches beyond one node knows no slope, and would be stiffer than the sound with one.
+    """
+    n, dim, support = weight.shape
+    for chunk in prange(chunk_count(n)):
+        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+            for d in range(dim):
+                mean = moment = 0.0
+                for a in range(support):
+                    mean += a * weight[p, d, a]
+                for a in range(support):
+                    moment += weight[p, d, a] * (a - mean) ** 2
+                scale = 1.0 / (max(moment, LEAST_MOMENT) * cell_size)
+                for a in range(support):
+                    slope[p, d, a] = weight[p, d, a] * (a - mean) * scale
 
 
 @kernel()

@@ -12,8 +12,10 @@ HERE, STRAYED, LOST = range(3)
 
 
 @kernel()
-def locate(position, extent, inverse_cell, slabs, slab_width, first_slab, window_low, window_high, verdicts):
-    """Check all particles. Returns the worst verdict and, where it is ``LOST``, the particle.
+def locate(
+    position, half_size, extent, inverse_cell, slabs, slab_width, first_slab, window_low, window_high, verdicts,
+):  # fmt: skip
+    """Check all particles, their domains too. Returns the worst verdict and, where it is ``LOST``, the particle.
 
     A particle may drift anywhere between the cells ``window_low`` and ``window_high``, but along the first
     axis no more than one cell beyond its slab. ``verdicts`` is scratch, two integers a chunk.
@@ -32,7 +34,8 @@ def locate(position, extent, inverse_cell, slabs, slab_width, first_slab, window
                     group += 1
             for d in range(dim):
                 x = position[p, d]
-                if not (0.0 <= x <= extent[d]):  # also true of a NaN
+                # Also true of a NaN; and a box that is none would send the weights anywhere.
+                if not (0.0 <= x <= extent[d] and 0.0 < half_size[p, d] < np.inf):
                     if worst != LOST:
                         worst, who = LOST, p
                     continue

@@ -58,13 +58,12 @@ def trace(L, out):
 
 
 @kernel()
-def stretch_volume(rate, dt, initial_volume, volume_ratio, volume):
-    """J ← J (1 + dt tr L) and V = J V0."""
+def stretch_volume(rate, dt, volume_ratio):
+    """J ← J (1 + dt tr L)."""
     n = len(rate)
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             volume_ratio[p] *= 1 + dt * rate[p]
-            volume[p] = volume_ratio[p] * initial_volume[p]
 
 
 @kernel()

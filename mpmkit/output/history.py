@@ -91,7 +91,7 @@ class History:
         for name, rows in (self._particles or {}).items():
             of_particle = PARTICLE_VARIABLES[name]
             attributes = {"units": of_particle.units, "long_name": of_particle.long_name}
-            variables[name] = (("time", "particle", *of_particle.trailing), np.stack(rows), attributes)
+            variables[name] = (("time", "particle", *of_particle.trailing), _padded(rows), attributes)
         # Units of a bare "s", without "since", so that no reader takes the numbers for dates or durations.
         time = ("time", np.array(self._times), {"units": "s", "long_name": "simulated time"})
         dataset = xarray.Dataset(variables, {"time": time}, self.attributes)
@@ -135,3 +135,11 @@ class History:
         self.write(path)
         end = clock.monotonic()
         self._next_flush = max(start + FLUSH_INTERVAL, end + FLUSH_PAUSE * (end - start))
+
+
+def _padded(rows: list[np.ndarray]) -> np.ndarray:
+    """One array of all rows; particles that a row did not have yet are not a number there."""
+    most = max(map(len, rows))
+    return np.stack(
+        [np.pad(r, [(0, most - len(r))] + [(0, 0)] * (r.ndim - 1), constant_values=np.nan) for r in rows]
+    )

@@ -34,6 +34,7 @@ def summarise(
     history: xarray.Dataset,
     *,
     particles: int,
+    particle_steps: int,
     steps: int,
     wall_time: float,
     stopped_because: str,
@@ -43,7 +44,8 @@ def summarise(
 
     Args:
         history: dataset of a ``History``.
-        particles: number of particles.
+        particles: number of particles at the end.
+        particle_steps: sum of their number over all steps.
         steps: number of steps done.
         wall_time: s.
         stopped_because: why the run ended.
@@ -61,7 +63,7 @@ def summarise(
         "particles": particles,
         "steps": steps,
         "wall_time": wall_time,
-        "particle_steps_per_second": particles * steps / wall_time if wall_time > 0 else None,
+        "particle_steps_per_second": particle_steps / wall_time if wall_time > 0 else None,
         "stopped_because": stopped_because,
         "plugins": plugins,
     }

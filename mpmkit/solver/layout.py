@@ -57,8 +57,8 @@ class Layout:
         if self.sorts == 0:
             return self._sort()
         verdict, who = locate(
-            position, self.grid.extent, 1 / self.grid.cell_size, self.slabs, SLAB_WIDTH, self.first_slab,
-            self._low, self._high, self._verdicts,
+            position, self.particles.half_size, self.grid.extent, 1 / self.grid.cell_size, self.slabs,
+            SLAB_WIDTH, self.first_slab, self._low, self._high, self._verdicts,
         )  # fmt: skip
         if verdict == LOST:
             return int(who)

@@ -27,8 +27,8 @@ class Measures:
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
-        low = (particles.position - particles.half_size).min(axis=0)
-        high = (particles.position + particles.half_size).max(axis=0)
+        low = (particles.position - particles.box).min(axis=0)
+        high = (particles.position + particles.box).max(axis=0)
         planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
         middle = (low + high)[:-1] / 2
         axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
@@ -43,7 +43,9 @@ class Measures:
         for group in p.groups:
             part = group.part
             volume = p.initial_volume[part]
-            strain += float(np.sum(volume * group.law.strain_energy(p.motion(group), group.state)))
+            strain += float(
+                np.sum(volume * group.law.strain_energy(p.motion(group), group.state, p.stress[part]))
+            )
             if group.law.uses_equation_of_state:
                 compressive += float(np.sum(volume * group.compressive_energy(p.volume_ratio[part])))
         gravity = self.case.gravity_vector
@@ -59,6 +61,7 @@ class Measures:
             "total_mass": float(np.sum(p.mass)),
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
             "max_speed": float(np.sqrt(squared.max())),
+            "fractured_fraction": self._fractured(p),
         }
 
     def _spread(self, p: Particles) -> float:
@@ -67,15 +70,21 @@ class Measures:
         for a in range(self.grid.dim - 1):
             if self.grid.periodic[a]:
                 continue
-            high = float((p.position[:, a] + p.half_size[:, a]).max())
-            low = float((p.position[:, a] - p.half_size[:, a]).min())
+            high = float((p.position[:, a] + p.box[:, a]).max())
+            low = float((p.position[:, a] - p.box[:, a]).min())
             plane = _symmetry_plane(self.case, self.grid, a)
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
 
+    def _fractured(self, p: Particles) -> float:
+        """Part of the volume in boxes longer than a cell: its neighbours share no cell with it any more."""
+        longest = p.box.max(axis=1)
+        apart = longest > self.grid.cell_size / 2 * (1 + 1e-9)
+        return float(np.sum(p.volume[apart]) / np.sum(p.volume))
+
     def _height(self, p: Particles, of: slice | np.ndarray) -> float:
         """Top of the material above the grid's lower face, m; not a number where there is none."""
-        tops = (p.position[:, -1] + p.half_size[:, -1])[of]
+        tops = (p.position[:, -1] + p.box[:, -1])[of]
         return float(tops.max()) if len(tops) else np.nan
 
     def _near_axis(self, p: Particles) -> np.ndarray:
@@ -97,13 +106,13 @@ def _symmetry_plane(case: Case, grid: Grid, axis: int) -> float | None:
 def cauchy_stress(p: Particles) -> np.ndarray:
     """Cauchy stress, Pa, ``(n, 6)``, tension positive: the extra stress minus the pressure."""
     stress = p.stress.copy()
-    stress[:, :3] -= p.pressure[:, None]
+    stress[:, :3] -= p.mapped_pressure[:, None]
     return stress
 
 
 def mean_pressure(p: Particles) -> np.ndarray:
     """Minus the mean normal stress, Pa, ``(n,)``; a solid has it too, though no equation of state."""
-    return p.pressure - p.stress[:, :3].sum(axis=1) / 3
+    return p.mapped_pressure - p.stress[:, :3].sum(axis=1) / 3
 
 
 PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
@@ -122,7 +131,7 @@ def frame_fields(p: Particles) -> dict[str, np.ndarray]:
         "velocity": p.velocity,
         "speed": np.sqrt(np.einsum("pi,pi->p", p.velocity, p.velocity)),
         "pressure": mean_pressure(p),
-        "half_size": p.half_size,
+        "half_size": p.box,
         "volume_ratio": p.volume_ratio,
         "shear_rate": shear_rate(p.velocity_gradient),
         "body": p.body,

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..case.model import Scheme
+from ..contracts.operations import Measure
 from ..kernels import domains, gather, nodes, scatter, tensors
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Particles
+from .time_step import limits
 
 
 class SceneOperations:
@@ -17,23 +21,33 @@ class SceneOperations:
     def __init__(
         self, scheme: Scheme, grid: Grid, particles: Particles, gravity: np.ndarray, radial: bool
     ) -> None:
-        n, dim, support = len(particles), grid.dim, scheme.shape.support
+        dim = grid.dim
         self.scheme = scheme
         self.grid = grid
+        self.cell_size = grid.cell_size
         self.particles = particles
         self.gravity = gravity
         self.radial = radial
         self.window = Window(grid)
-        self.layout = Layout(grid, particles, self.window)
-        self.base = np.zeros((n, dim), dtype=np.int32)
-        self.weight = np.zeros((n, dim, support))
-        self.gradient = np.zeros((n, dim, support))
-        self.hoop = np.zeros((n, support if radial else 0))
-        self._rate = np.zeros(n)
+        self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
+        self.mean_speed = 0.0
         self._in_space = "2d" if dim == 2 else "3d"
         self._scatter = getattr(scatter, f"scatter_{self._in_space}")
         self._advance = getattr(gather, f"advance_{self._in_space}")
         self._gradient = getattr(gather, f"gradient_{self._in_space}")
+        self.allocate()
+
+    def allocate(self) -> None:
+        """Tables and scratch for as many particles as there are; to be called again when there are more."""
+        n, dim, support = len(self.particles), self.grid.dim, self.scheme.shape.support
+        self.layout = Layout(self.grid, self.particles, self.window)
+        self.base = np.zeros((n, dim), dtype=np.int32)
+        self.weight = np.zeros((n, dim, support))
+        self.gradient = np.zeros((n, dim, support))
+        self.hoop = np.zeros((n, support if self.radial else 0))
+        self._slope = np.zeros((n, dim, support) if self.scheme.velocity.affine else (0, dim, support))
+        self._no_hoop = np.zeros((n, 0))
+        self._rate = np.zeros(n)
 
     # --- The frame of a step
 
@@ -71,9 +85,12 @@ class SceneOperations:
 
     def _map(self, momentum: bool, forces: bool) -> None:
         p, w = self.particles, self.window
+        if forces:
+            np.copyto(p.mapped_pressure, self._treated(p.pressure))
         self._scatter(
             w.nodes, w.strides, w.lower, self.layout.slabs, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.volume, p.stress, p.pressure, self.gravity, momentum, forces,
+            p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
+            self.cell_size, momentum, forces,
         )  # fmt: skip
 
     def _fold(self, first: int, last: int) -> None:
@@ -99,6 +116,13 @@ class SceneOperations:
             w.nodes, w.strides, w.lower, self.base, self.weight, self.hoop, dt, flip, p.position, p.velocity
         )
 
+    def update_affine(self) -> None:
+        p, w = self.particles, self.window
+        gather.affine_slopes(self.weight, self.cell_size, self._slope)
+        self._gradient(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self._slope, self._no_hoop, p.affine
+        )
+
     def update_velocity_gradient(self) -> None:
         w = self.window
         self._gradient(
@@ -111,8 +135,9 @@ class SceneOperations:
     def update_stress(self, dt: float) -> None:
         p = self.particles
         tensors.trace(p.velocity_gradient, self._rate)
-        rate = self.scheme.volumetric.average(self, self._rate)
-        tensors.stretch_volume(rate, dt, p.initial_volume, p.volume_ratio, p.volume)
+        tensors.stretch_volume(self._treated(self._rate), dt, p.volume_ratio)
+        self._relax_volume(dt)
+        np.multiply(p.volume_ratio, p.initial_volume, out=p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
         for group in p.groups:
@@ -123,36 +148,79 @@ class SceneOperations:
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
-        self._follow_domains()
-        treated = self.scheme.volumetric.average(self, p.pressure)
-        if treated is not p.pressure:
-            p.pressure[...] = treated
+        self._follow_domains(dt)
         for group in p.groups:
             part = group.part
             group.law.update_stress(p.motion(group), group.state, dt, p.stress[part])
 
-    def _follow_domains(self) -> None:
+    def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
-        largest = self.grid.cell_size / 2
-        if rule == "stretch":
-            domains.follow_stretch(p.deformation_gradient, p.initial_half_size, largest, p.half_size)
+        domains.follow_strain(p.velocity_gradient, dt, p.box)
+        if rule == "strain":
+            np.copyto(p.half_size, p.box)
+        elif rule == "stretch":
+            domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
         elif rule == "volume":
-            domains.follow_volume(p.volume_ratio, p.initial_half_size, largest, p.half_size)
+            domains.follow_volume(p.volume_ratio, p.initial_half_size, p.half_size)
+
+    # --- Volumes
+
+    def _treated(self, field: np.ndarray) -> np.ndarray:
+        """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
+        treated = self.scheme.volumetric.average(self, field)
+        if treated is not field:
+            for group in self.particles.groups:
+                if not group.law.uses_equation_of_state:
+                    treated[group.part] = field[group.part]
+        return treated
+
+    def _relax_volume(self, dt: float) -> None:
+        """J ← J + (1 - exp(-rate Δt)) (A J - J), with A the average over the grid by initial volume.
+
+        A is symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any
+        convex energy Σ V0 e(J) does not grow.
+        """
+        rate = self.scheme.volumetric.relaxation_rate(self)
+        if rate == 0.0:
+            return
+        J = self.particles.volume_ratio
+        mean = self.nodes_to_particles(self.particles_to_nodes(J, "initial-volume"))
+        for group in self.particles.groups:
+            if group.law.uses_equation_of_state:
+                part = group.part
+                J[part] += -math.expm1(-rate * dt) * (mean[part] - J[part])
 
     # --- Fields in general
 
-    def particles_to_nodes(self, values: np.ndarray, mass_weighted: bool = False) -> np.ndarray:
-        w, p = self.window, self.particles
+    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        w = self.window
         field = np.zeros((len(w.nodes), 2))
-        measure = p.mass if mass_weighted else p.volume
         scatter.scatter_scalar(
-            field, w.strides, w.lower, self.layout.slabs, self.base, self.weight, measure, values
+            field,
+            w.strides,
+            w.lower,
+            self.layout.slabs,
+            self.base,
+            self.weight,
+            self._measure(measure),
+            values,
         )
         nodes.fold(field, *self._faces(), 0, 2, False)
         total, weighted = field[:, 0], field[:, 1]
         average = np.divide(weighted, total, out=np.zeros(len(field)), where=total > 0)
         nodes.fill(average[:, None], *self._faces(), 0, 1, False)
         return average
+
+    def _measure(self, name: Measure) -> np.ndarray:
+        """Weight of every particle in an average; volumes only of what has an equation of state."""
+        p = self.particles
+        measure = {"mass": p.mass, "volume": p.volume, "initial-volume": p.initial_volume}[name]
+        if name != "mass" and not all(group.law.uses_equation_of_state for group in p.groups):
+            measure = measure.copy()
+            for group in p.groups:
+                if not group.law.uses_equation_of_state:
+                    measure[group.part] = 0.0
+        return measure
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         w = self.window

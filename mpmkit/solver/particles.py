@@ -1,4 +1,4 @@
-"""The particles: a structure of arrays, allocated once, in groups of one material."""
+"""The particles: a structure of arrays, in groups of one material. Splitting alone replaces the arrays."""
 
 from __future__ import annotations
 
@@ -45,16 +45,24 @@ class Particles:
     body: np.ndarray
     position: np.ndarray
     velocity: np.ndarray
+    affine: np.ndarray
+    """(n, dim, dim) affine part of the velocity, 1/s; (n, 0, 0) where the velocity update keeps none"""
     mass: np.ndarray
     initial_volume: np.ndarray
     volume: np.ndarray
     volume_ratio: np.ndarray
     initial_half_size: np.ndarray
     half_size: np.ndarray
+    """(n, dim) half side lengths of the domains that the shape function sees, by its own rule"""
+    box: np.ndarray
+    """(n, dim) half side lengths of the material's boxes, m, by the normal strain along each axis"""
     velocity_gradient: np.ndarray
     stress: np.ndarray
-    """(n, 6) the extra stress; the Cauchy stress is this minus the pressure."""
+    """(n, 6) the extra stress; the Cauchy stress is this minus the mapped pressure."""
     pressure: np.ndarray
+    """(n,) of the equation of state at the particle's own volume ratio"""
+    mapped_pressure: np.ndarray
+    """(n,) what the volumetric treatment makes of it: the pressure that enters the internal force"""
     deformation_gradient: np.ndarray | None
     groups: list[Group] = field(default_factory=list)
 
@@ -68,6 +76,16 @@ class Particles:
     def arrays(self) -> dict[str, np.ndarray]:
         """Every array that has an entry a particle, by name."""
         return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+
+    def take(self, index: np.ndarray) -> None:
+        """Replace every array by its entries at ``index``, which must leave each group in its own part."""
+        parts = [np.searchsorted(index, [group.part.start, group.part.stop]) for group in self.groups]
+        for name, array in self.arrays().items():
+            setattr(self, name, array[index])
+        for group, (start, stop) in zip(self.groups, parts, strict=True):
+            local = index[start:stop] - group.part.start
+            group.state = {name: array[local] for name, array in group.state.items()}
+            group.part = slice(int(start), int(stop))
 
     def reorder(self, order: np.ndarray) -> None:
         """Put the particles into a new order, which must leave each group in its own part."""
@@ -86,6 +104,7 @@ class Particles:
             volume_ratio=self.volume_ratio[part],
             pressure=self.pressure[part],
             density=group.density,
+            sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
         )
 

@@ -44,6 +44,7 @@ def make_particles(case: Case) -> Particles:
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
     n = len(position)
+    affine = case.space_.dim if case.scheme.velocity.affine else 0
     particles = Particles(
         number=np.arange(n, dtype=np.int64),
         body=np.repeat(np.array([number for number, _ in bodies], dtype=np.int32), counts),
@@ -54,15 +55,18 @@ def make_particles(case: Case) -> Particles:
                 for (_, body), found in zip(bodies, samples, strict=True)
             ]
         ),
+        affine=np.zeros((n, affine, affine)),
         mass=np.repeat([body.material.density for _, body in bodies], counts) * volume,
         initial_volume=volume,
         volume=volume.copy(),
         volume_ratio=np.ones(n),
         initial_half_size=half_size,
         half_size=half_size.copy(),
+        box=half_size.copy(),
         velocity_gradient=np.zeros((n, 3, 3)),
         stress=np.zeros((n, 6)),
         pressure=np.zeros(n),
+        mapped_pressure=np.zeros(n),
         deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
     )
     start = 0

@@ -15,6 +15,7 @@ from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
 from .scene import make_particles
+from .splitting import split
 from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
@@ -42,22 +43,24 @@ class Simulation:
         self.limits: Limits
         self.time_step: float
         self.limited_by: str
-        self._scratch = np.empty(len(self.particles) // CHUNK + 1)
+        self.particle_steps = 0
         self.choose_time_step()
 
     def choose_time_step(self) -> None:
         """Recompute the limits, and with them the step."""
-        speed = largest_speed(self.particles.velocity, self._scratch)
+        scratch = np.empty(len(self.particles) // CHUNK + 1)
+        speed = largest_speed(self.particles.velocity, scratch)
         self.limits = limits(self.particles.groups, self.grid.cell_size, float(speed))
-        scheme = self.case.scheme
-        self.time_step, self.limited_by = choose_step(
-            scheme.time_step, self.limits, scheme.order.viscous_fraction
-        )
+        self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits)
+        self.operations.mean_speed = self._mean_speed()
 
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""
-        scheme = self.case.scheme
-        return warnings(scheme.time_step, self.limits, self.time_step, scheme.order.viscous_fraction)
+        return warnings(self.case.scheme, self.limits, self.time_step)
+
+    def _mean_speed(self) -> float:
+        p = self.particles
+        return float(np.sqrt(np.einsum("p,pi,pi->", p.mass, p.velocity, p.velocity) / np.sum(p.mass)))
 
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.
@@ -67,6 +70,10 @@ class Simulation:
         """
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
+            if self.case.scheme.splitting and split(
+                self.particles, self.grid.cell_size, self.case.space_.radial
+            ):
+                self.operations.allocate()
             self.choose_time_step()
         try:
             lost = self.operations.begin()
@@ -78,6 +85,7 @@ class Simulation:
         self.operations.step(dt)
         self.time += dt
         self.steps += 1
+        self.particle_steps += len(self.particles)
         return dt
 
     def check(self) -> None:
@@ -102,6 +110,11 @@ class Simulation:
         elif p.volume_ratio[index] <= 0:
             guard = "volume-ratio"
             what = f"has a volume ratio of {p.volume_ratio[index]:.3g}, which is not positive"
+            cure = "the run diverged, reduce scheme.time_step.fraction"
+        elif not (p.half_size[index] > 0).all() or not np.isfinite(p.half_size[index]).all():
+            guard = "particle-domain"
+            sides = ", ".join(f"{2 * size:.3g}" for size in p.half_size[index])
+            what = f"has a domain with sides of {sides} m"
             cure = "the run diverged, reduce scheme.time_step.fraction"
         elif scattered:
             guard = "scattered"

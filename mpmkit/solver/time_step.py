@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..case.model import TimeStep
+from ..case.model import Scheme
 from .particles import Group
 
 VISCOUS_NUMBER = 0.375
@@ -47,28 +47,37 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
     return Limits(acoustic, viscous, _quotient(cell_size, largest_speed))
 
 
-def choose_step(settings: TimeStep, found: Limits, viscous_fraction: float) -> tuple[float, str]:
+def borne_by(scheme: Scheme) -> dict[str, float]:
+    """Part of each limit, by name, at which the schemes are still stable."""
+    return {
+        "acoustic": scheme.velocity.acoustic_fraction,
+        "viscous": scheme.order.viscous_fraction,
+        "advective": 1.0,
+    }
+
+
+def choose_step(scheme: Scheme, found: Limits) -> tuple[float, str]:
     """The step, s, and the name of the limit that sets it.
 
-    It is ``settings.fraction`` of the smallest limit that is not ignored, and no more than
-    ``viscous_fraction`` of the viscous one, which is what the update order bears.
+    It is ``time_step.fraction`` of the smallest limit that is not ignored, and no more of any than the
+    schemes bear.
     """
-    steps = {name: settings.fraction * limit for name, limit in found.as_dict().items()}
-    steps["viscous"] = min(settings.fraction, viscous_fraction) * found.viscous
+    settings, borne = scheme.time_step, borne_by(scheme)
+    steps = {name: min(settings.fraction, borne[name]) * limit for name, limit in found.as_dict().items()}
     kept = {name: step for name, step in steps.items() if name not in settings.ignore}
     name = min(kept, key=kept.__getitem__, default="none")
     return kept.get(name, math.inf), name
 
 
-def warnings(settings: TimeStep, found: Limits, step: float, viscous_fraction: float) -> list[str]:
+def warnings(scheme: Scheme, found: Limits, step: float) -> list[str]:
     """One sentence for every limit that is too small for the step because the case ignores it."""
-    borne = {"acoustic": 1.0, "viscous": viscous_fraction, "advective": 1.0}
+    settings, borne = scheme.time_step, borne_by(scheme)
     return [
         f"the time step of {step:.3g} s exceeds the {name} limit of {limit:.3g} s {step / limit:.3g}-fold, "
         f"as scheme.time_step.ignore asks"
         if step > limit
         else f"the time step of {step:.3g} s is {step / limit:.3g} of the {name} limit of {limit:.3g} s, "
-        f"of which the order bears {borne[name]:g}; it was ignored as scheme.time_step.ignore asks"
+        f"of which the schemes bear {borne[name]:g}; it was ignored as scheme.time_step.ignore asks"
         for name, limit in found.as_dict().items()
         if name in settings.ignore and step > borne[name] * limit
     ]

@@ -43,7 +43,9 @@ class NeoHookean(ConstitutiveLaw):
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         return float(np.sqrt((self.lame + 2 * self.shear_modulus) / density))
 
-    def strain_energy(self, motion: Motion, state: Mapping[str, np.ndarray]) -> np.ndarray:
+    def strain_energy(
+        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+    ) -> np.ndarray:
         F, log_J = motion.deformation_gradient, np.log(motion.volume_ratio)
         assert F is not None  # the law asks for it
         G, lame = self.shear_modulus, self.lame

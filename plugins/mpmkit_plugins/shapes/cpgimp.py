@@ -13,7 +13,8 @@ from mpmkit.kernels.compile import CHUNK, chunk_count, inline, kernel
 class CpGIMP(ShapeFunction):
     """N̄ = 1/(2 l_p) ∫ N dx and its gradient over [x_p - l_p, x_p + l_p]: eqs. 2 and 3 of Ferreira et al.
 
-    The averages are exact. A box is at most one cell wide and so covers at most two cells, three nodes.
+    The averages are exact. A box covers at most two cells, three nodes: one that is wider than a cell counts
+    as one cell wide.
     In an axisymmetric scene the radial ones are weighted with r, N̄ = ∫ N r dr / ∫ r dr (Nairn & Guilkey).
     """
 
@@ -25,10 +26,11 @@ class CpGIMP(ShapeFunction):
     )
     support = 3
 
-    domain: Literal["fixed", "stretch", "volume"] = Field(
-        default="fixed",
-        description="how the particle's box follows the deformation: not at all (uGIMP), by the stretch "
-        "U_ii, or as the cube root of the volume ratio (square root in two dimensions)",
+    domain: Literal["strain", "fixed", "stretch", "volume"] = Field(
+        default="strain",
+        description="how the particle's box follows the deformation: by the normal strain along each axis, "
+        "not at all (uGIMP), by the stretch U_ii, or as the cube root of the volume ratio (square root in "
+        "two dimensions)",
     )
 
     @property
@@ -48,17 +50,18 @@ def _fill(x, l, inverse_cell, base, weight, gradient):
     for chunk in prange(chunk_count(n)):
         for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
             for d in range(dim):
-                begin = (x[p, d] - l[p, d]) * inverse_cell
+                width = min(2 * l[p, d] * inverse_cell, 1.0)
+                begin = x[p, d] * inverse_cell - 0.5 * width
                 cell = math.floor(begin)
-                width = 2 * l[p, d] * inverse_cell
                 # In units of cells from node 0 the box is [a, b]; up to 1 it lies in the first cell, beyond
                 # in the second. A hat is linear in each, so that the midpoint gives its mean exactly.
                 a = begin - cell
                 b = a + width
-                first = (min(b, 1.0) - a) / width  # fractions of the box in either cell
-                second = 1.0 - first
-                ξ = 0.5 * (a + min(b, 1.0))  # midpoints of the two parts, each in its cell
-                η = 0.5 * (max(b, 1.0) - 1.0)
+                # A node that is barely touched divides one small number by another. Both must be small in
+                # the same way, weight ~ gradient²: fractions and midpoints come from the same differences.
+                to_edge, beyond = min(b, 1.0) - a, max(b, 1.0) - 1.0
+                first, second = to_edge / width, beyond / width  # parts of the box in either cell
+                ξ, η = a + 0.5 * to_edge, 0.5 * beyond  # midpoints of the two parts, each in its cell
                 base[p, d] = cell
                 weight[p, d, 0] = first * (1 - ξ)
                 weight[p, d, 1] = first * ξ + second * (1 - η)
@@ -70,11 +73,14 @@ def _fill(x, l, inverse_cell, base, weight, gradient):
 
 @inline()
 def _ring_averages(cell, a, b):
-    """∫ r dr, ∫ ξ r dr and ∫ dr over [a, b] in cell ``cell``, all in units of cells; ξ = r - cell."""
+    """∫ r dr, ∫ (1 - ξ) r dr, ∫ ξ r dr and ∫ dr over [a, b] in cell ``cell``, ξ = r - cell, in cells.
+
+    The second is not left to be the difference of the others, which where it is tiny would be rounding.
+    """
     mid, length = 0.5 * (a + b), b - a
     spread = length * length / 12
     area = length * (cell + mid)
-    return area, area * mid + length * spread, length
+    return area, area * (1 - mid) - length * spread, area * mid + length * spread, length
 
 
 @kernel()
@@ -82,19 +88,20 @@ def _fill_radial(radius, l, cell_size, base, weight, gradient, hoop):
     n = len(radius)
     for chunk in prange(chunk_count(n)):
         for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            begin = max(radius[p] - l[p], 0.0) / cell_size  # a box that would cross the axis ends there
-            end = (radius[p] + l[p]) / cell_size
+            half = min(l[p], 0.5 * cell_size)
+            begin = max(radius[p] - half, 0.0) / cell_size  # a box that would cross the axis ends there
+            end = (radius[p] + half) / cell_size
             cell = math.floor(begin)
             a, b = begin - cell, end - cell
-            area1, moment1, length1 = _ring_averages(cell, a, min(b, 1.0))
-            area2, moment2, length2 = _ring_averages(cell + 1, 0.0, max(b, 1.0) - 1.0)
+            area1, left1, right1, length1 = _ring_averages(cell, a, min(b, 1.0))
+            area2, left2, right2, length2 = _ring_averages(cell + 1, 0.0, max(b, 1.0) - 1.0)
             area = area1 + area2
             per_area = 1 / (area * cell_size)
             mean1, mean2 = 0.5 * (a + min(b, 1.0)), 0.5 * length2
             base[p] = cell
-            weight[p, 0] = (area1 - moment1) / area
-            weight[p, 1] = (moment1 + area2 - moment2) / area
-            weight[p, 2] = moment2 / area
+            weight[p, 0] = left1 / area
+            weight[p, 1] = (right1 + left2) / area
+            weight[p, 2] = right2 / area
             gradient[p, 0] = -area1 * per_area
             gradient[p, 1] = (area1 - area2) * per_area
             gradient[p, 2] = area2 * per_area

@@ -1,0 +1,76 @@
+"""The short contract of a viscous fluid: its apparent viscosity."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from ..kernels.tensors import shear_rate, viscous_stress
+from . import maxwell
+from .law import ConstitutiveLaw, Motion
+
+REST_SHEAR_RATE = 1e-12
+"""Shear rate, 1/s, that stands for rest, so that a law written as in the paper divides by no zero."""
+
+
+class GeneralisedNewtonianLaw(ConstitutiveLaw):
+    """A fluid given by its apparent viscosity alone: sigma = -p I + 2 mu(γ̇) (D - tr(D)/3 I).
+
+    This is eq. 6 of Ferreira et al. with the tensor that the printed equation lost, and
+    γ̇ = √(2 D':D') with the deviatoric rate of deformation D'.
+
+    In its ``relaxed`` form the stress follows this through an elastic spring (``contracts.maxwell``). It is
+    then stable at the acoustic step however viscous the fluid, and the same in steady flow; but a change of
+    stress where the viscosity is mu takes mu/G to come through, so that a regularised fluid below its yield
+    stress, where mu is about tau0 m, is elastic for tau0 m/G seconds before it creeps.
+    """
+
+    form: Literal["explicit", "relaxed"] = Field(
+        default="explicit",
+        description="explicit: the viscous stress of the present rate, which limits the step; relaxed: "
+        "through an elastic spring of modulus 0.05 ρ c², without that limit",
+    )
+
+    @abstractmethod
+    def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
+        """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
+
+    def update_stress(
+        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+    ) -> None:
+        if self.form == "relaxed":
+            maxwell.relax(motion, self._modulus(motion), dt, stress, self._relaxed)
+            return
+        rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
+        viscous_stress(motion.velocity_gradient, self.apparent_viscosity(rate), stress)
+
+    def largest_viscosity(self, largest_shear_rate: float) -> float:
+        if self.form == "relaxed":
+            return 0.0
+        rates = np.geomspace(REST_SHEAR_RATE, max(largest_shear_rate, 1.0), 400)
+        return float(np.max(self.apparent_viscosity(rates)))
+
+    def wave_speed(self, density: float, sound_speed: float | None) -> float:
+        speed = super().wave_speed(density, sound_speed)
+        if self.form == "explicit":
+            return speed
+        return maxwell.wave_speed(maxwell.shear_modulus(None, density, speed), density, speed)
+
+    def strain_energy(
+        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+    ) -> np.ndarray | float:
+        if self.form == "explicit":
+            return 0.0
+        return maxwell.strain_energy(self._modulus(motion), motion, stress)
+
+    def _modulus(self, motion: Motion) -> float:
+        return maxwell.shear_modulus(None, motion.density, motion.sound_speed)
+
+    def _relaxed(self, trial: np.ndarray, stiffness: float) -> np.ndarray:
+        return maxwell.solve(
+            lambda rate: self.apparent_viscosity(rate) * rate, trial, stiffness, REST_SHEAR_RATE
+        )
