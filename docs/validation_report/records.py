@@ -1,0 +1,27 @@
+"""The files in which the tests kept what they measured."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+Sheet = dict[str, Any]
+
+
+def load(folder: Path) -> list[Sheet]:
+    """All sheets, in the order of their tests."""
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
+    return sorted(found, key=lambda sheet: (sheet["section"], sheet["test"].split("[")[0]))
+
+
+def clear(folder: Path) -> None:
+    """Forget an earlier run."""
+    for pattern in ("*.json", "*.partial"):
+        for path in folder.glob(pattern):
+            path.unlink()
+
+
+def ended(sheet: Sheet) -> bool:
+    """Whether the test came to an end, well or not."""
+    return sheet["status"] != "running"
