@@ -10,9 +10,13 @@ Sheet = dict[str, Any]
 
 
 def load(folder: Path) -> list[Sheet]:
-    """All sheets, in the order of their tests."""
+    """All sheets, in the order in which the tests are written."""
     found = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
-    return sorted(found, key=lambda sheet: (sheet["section"], sheet["test"].split("[")[0]))
+    return sorted(found, key=_place)
+
+
+def _place(sheet: Sheet) -> tuple:
+    return sheet["section"], sheet["test"].split("::")[0], sheet["line"], sheet["began"]
 
 
 def clear(folder: Path) -> None:

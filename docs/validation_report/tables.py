@@ -23,10 +23,10 @@ SECTIONS = {
 PASS, FAIL, KNOWN, CRASH = "pass", "**fail**", "**fail** (known)", "**did not finish**"
 HEAD = """# Validation
 
-What the tests in `tests/validation` measured, next to what it should be. "Expected" is exact, derived from the
-equations, or an independent solution; a band says how far off a number may be and still be called right. Where
-several runs stand behind a line, the one closest to the edge of its band is shown. Nothing is left out: a
-number outside its band stays in as failed.
+What the tests in `tests/validation` measured, next to what it should be. "Expected" is exact, derived from
+the equations, or an independent solution; a band says how far off a number may be and still be called right.
+Where several runs stand behind a line, the one closest to the edge of its band is shown. Nothing is left
+out: a number outside its band stays in as failed.
 
 Written by `python docs/validation.py`; do not edit.
 """
@@ -126,8 +126,9 @@ def _table(section: Section) -> str:
 
 
 def _silent(section: Section) -> str:
-    many = section.silent > 1
-    return f"{section.silent} more test{'s' if many else ''} without a number of {'their' if many else 'its'} own passed.\n"
+    if section.silent == 1:
+        return "1 more test, without a number of its own, passed.\n"
+    return f"{section.silent} more tests, without numbers of their own, passed.\n"
 
 
 def tally(sheets: list[Sheet]) -> str:

@@ -34,7 +34,7 @@ class Band:
         return math.inf
 
     def holds(self, obtained: float) -> bool:
-        return self.low <= obtained <= self.high
+        return bool(self.low <= obtained <= self.high)
 
     def show(self, obtained: float) -> str:
         return number(obtained, self.digits)
@@ -54,7 +54,7 @@ def close_to(expected: float, *, rel: float = 0.0, abs: float = 0.0) -> Band:
         text = f"± {number(rel, 2)} relative"
     resolved = math.log10(math.fabs(expected) / tolerance) if expected and tolerance else 2.0
     digits = min(max(math.ceil(resolved) + 2, 3), 9)
-    return Band(expected - tolerance, expected + tolerance, number(expected), text, digits)
+    return Band(expected - tolerance, expected + tolerance, number(expected, max(digits, 6)), text, digits)
 
 
 def below(limit: float, expected: str | None = None) -> Band:

@@ -28,7 +28,8 @@ def validate(request) -> Sheet:
 def pytest_runtest_setup(item):
     marker = item.get_closest_marker("section")
     section = marker.args[0] if marker else 0
-    item.stash[SHEET] = Sheet(item.nodeid, section, item.get_closest_marker("slow") is not None)
+    slow = item.get_closest_marker("slow") is not None
+    item.stash[SHEET] = Sheet(item.nodeid, item.reportinfo()[1] or 0, section, slow)
 
 
 @pytest.hookimpl(wrapper=True)

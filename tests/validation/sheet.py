@@ -20,6 +20,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -83,8 +84,9 @@ class Curves:
 class Sheet:
     """Everything that one test measured."""
 
-    def __init__(self, test: str, section: int, slow: bool) -> None:
-        self.test, self.section, self.slow = test, section, slow
+    def __init__(self, test: str, line: int, section: int, slow: bool) -> None:
+        self.test, self.line, self.section, self.slow = test, line, section, slow
+        self.began = time.time()
         self.rows: list[Row] = []
         self.curves: list[Curves] = []
         self.status, self.message, self.seconds = "running", "", 0.0
@@ -104,7 +106,7 @@ class Sheet:
                 band.show(value) + suffix,
                 band.text,
                 band.holds(value),
-                used if np.isfinite(used) else None,
+                float(used) if np.isfinite(used) else None,
             )
         )
 
