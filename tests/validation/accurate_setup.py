@@ -39,6 +39,11 @@ def herschel_bulkley(
     return {"law": "herschel-bulkley-evp", **flow, **more}
 
 
+def stiff(density: float, speed: float) -> dict[str, float]:
+    """Sound speed and shear modulus of a material whose waves are all this fast, m/s."""
+    return {"sound_speed": speed, "shear_modulus": 0.5 * density * speed**2}
+
+
 def scheme(**changes: Any) -> dict[str, Any]:
     """The accurate scheme with some keys changed."""
     return {**SCHEME, **changes}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bands import close_to
+from accurate_setup import needed, scheme
+from bands import below, close_to
 from channel import Channel
 from fluids import UNIT
 
@@ -37,6 +38,33 @@ def test_regularised_fluid_nearly_stops(validate, drive, m, at_rest):
     name = f"Cessation, unit Bingham, G → {drive:g}, regularised: time of arrest"
     validate(name, found, close_to(at_rest, rel=0.05), unit="s")
     draw_decay(validate, f"G = {drive:g}, regularised", times, shares)
+
+
+@needed
+@pytest.mark.parametrize("drive", AT_REST)
+def test_exact_fluid_stops(validate, drive):
+    """With a yield stress by return mapping the discharge reaches zero, and that is the time of arrest.
+
+    The plug that is held by tau0 at the wall springs back when it stops: it rings with at most tau0/(rho c_s)
+    = 2.5e-3, c_s its shear wave's speed, which is 1.2 % of the mean speed at the start.
+    """
+    shear_modulus = 1e4
+    flow = Channel(UNIT, 1.0, 1.0, sound_speed=100.0, shear_modulus=shear_modulus, **scheme())
+    flow.start_with(UNIT.speed(1.0, 1.0, flow.z))
+    flow.set_drive(drive)
+    first, times, shares = flow.discharge(), [0.0], [1.0]
+    while times[-1] < 1.5 * AT_REST[drive]:
+        flow.run(0.004)
+        times.append(flow.simulation.time)
+        shares.append(flow.discharge() / first)
+    shares = np.array(shares)
+    turn = int(np.argmax(shares <= 0))
+    stopped = np.interp(0, -shares[turn - 1 : turn + 1], times[turn - 1 : turn + 1]) if turn else np.nan
+    name = f"Cessation, unit Bingham, G → {drive:g}, exact yield"
+    validate(f"{name}: time of arrest", stopped, close_to(AT_REST[drive], rel=0.05), unit="s")
+    ringing = UNIT.yield_stress / np.sqrt(shear_modulus) / first
+    validate(f"{name}: discharge after it, of the first", np.abs(shares[turn:]).max(), below(ringing, "0"))
+    draw_decay(validate, f"G = {drive:g}, exact yield", times, shares)
 
 
 def draw_decay(validate, name: str, times: list[float], shares: list[float]) -> None:

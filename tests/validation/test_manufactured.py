@@ -1,4 +1,4 @@
-"""Order of convergence on a manufactured solution, small and large; see ``manufactured`` for its derivation."""
+"""Order of convergence on a manufactured solution, small and large; ``manufactured`` derives it."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_linear_functions_fail_on_a_large_motion(validate, order, amplitude):
 
 
 def test_boxes_that_stay_as_they_were_are_no_longer_contiguous(validate):
-    """uGIMP, ``fixed``: at F = 0.7 to 1.3 boxes overlap and leave gaps. Its order is gone, that of cpGIMP not."""
+    """uGIMP, ``fixed``: at F = 0.7 to 1.3 boxes overlap and leave gaps; its order is gone."""
     fixed, contiguous = (errors(LARGE, shape, "usl") for shape in ("cpgimp", CONTIGUOUS))
     name = "Manufactured solution, A = 0.05, boxes fixed, USL: error at 64 cells over that of cpGIMP"
     validate(name, fixed[-1] / contiguous[-1], above(2.0, "larger"))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from accurate_setup import needed, scheme
 from bands import above, below, close_to
 from channel import Channel, down_slope, names, observed_order
 from fluids import BAND, CONCRETE, PLASTIC, UNIT, WATER
@@ -97,6 +98,33 @@ def draw_errors(validate, name: str, cells: list[int], errors: list[float]) -> N
     )
     chart.reference("second order", cells, 0.5 / np.square(cells))
     chart.points(name, cells, errors)
+
+
+@needed
+@pytest.mark.parametrize(
+    ("fluid", "name", "height", "drive", "plug", "discharge"),
+    [
+        (CONCRETE, "Herschel–Bulkley concrete", 0.05, 1e4, 0.075168, 2.90865e-3),
+        (PLASTIC, "Bingham concrete", 0.05, 1e4, 0.105999, 4.20077e-3),
+        (UNIT, "unit Bingham", 1.0, 1.0, 0.28125, 0.210938),
+    ],
+    ids=["herschel-bulkley", "bingham", "unit"],
+)
+def test_exact_laws_from_rest(validate, fluid, name, height, drive, plug, discharge):
+    """The accurate set-up. Its elastic strain, below 2 % at the wall, leaves the steady flow as it is."""
+    modulus = 50 * drive * height
+    sound = np.sqrt(2 * modulus / fluid.density)
+    flow = Channel(fluid, height, drive, sound_speed=sound, shear_modulus=modulus, **scheme())
+    viscous = fluid.density * height**2 / fluid.consistency
+    flow.run_until_steady(1e-3, interval=0.1 * viscous, at_most=20 * viscous)
+    hold_to_the_table(validate, flow, f"{name}, exact yield", plug, discharge)
+    z = np.linspace(0, height, 400)
+    chart = validate.figure(
+        "poiseuille_exact", "Plane Poiseuille flow, exact yield stress", x="u over that of the plug",
+        y="distance from the wall over H",
+    )  # fmt: skip
+    chart.reference(f"exact, {name}", fluid.speed(drive, height, z) / plug, z / height)
+    chart.points(f"mpmkit, {name}", flow.speed / plug, flow.z / height)
 
 
 @pytest.mark.parametrize("order", names("order"))
