@@ -141,9 +141,9 @@ def test_exact_film_on_20_degrees(validate):
 def test_exact_film_below_its_critical_thickness_stays(validate):
     """40 mm on 10°, where 43.1 mm would flow. It is left alone, and then pushed off at 10 mm/s, and stops.
 
-    Across the slope it starts a trace out of balance, since its layers are where they would be without weight,
-    and rings: with g H/c. Waves of 200 m/s keep that below what is asked for. Once pushed it rings along the
-    slope as well, elastic as it is, every 4 H/c; what counts then is how far it drifts.
+    Across the slope it starts a trace out of balance, since its layers are where they would be without
+    weight, and rings: with g H/c. Waves of 200 m/s keep that below what is asked for. Once pushed it rings
+    along the slope as well, elastic as it is, every 4 H/c; what counts then is how far it drifts.
     """
     flow = exact_film(10, 0.04, 8, waves=200.0)
     free_fall = np.sqrt(2 * 9.81 * 0.04)
