@@ -118,9 +118,9 @@ def grows(simulation: mpmkit.Simulation, dt: float, steps: int = 600) -> bool:
 def largest_eigenvalue(simulation: mpmkit.Simulation, guess: float, iterations: int = 400) -> float:
     """Of the grid's own operator, from nodal velocity to minus the nodal acceleration that it causes.
 
-    By power iteration on 1 - t A, with t = 4/guess, so that the largest eigenvalue wins if it is more than half
-    of the guess. The stress is what the law answers to a velocity gradient, or to a strain of that size if it
-    is elastic, and -K tr for a fluid with a sound speed.
+    By power iteration on 1 - t A, with t = 4/guess, so that the largest eigenvalue wins if it is more than
+    half of the guess. The stress is what the law answers to a velocity gradient, or to a strain of that size
+    if it is elastic, and -K tr for a fluid with a sound speed.
     """
     ops, dim = simulation.operations, simulation.grid.dim
     ops.begin()

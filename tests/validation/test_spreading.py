@@ -47,8 +47,9 @@ def disc(radius, height, viscosity, floor, cells, far, factor, **numerics):
     )
 
 
+# The default takes half of the viscous limit, all that USL bears inside a body; a free edge bears less.
 SCHEMES = [
-    pytest.param({}, id="default"),
+    pytest.param({"time_step": {"fraction": 0.25}}, id="default"),
     pytest.param(scheme(), id="accurate", marks=needed),
 ]
 
