@@ -5,12 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
 from mpmkit.report.style import BLACK, BLUE, DPI, GREEN, ORANGE, VERMILION, figure_style, line_chart
 
 from .records import Sheet
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, "#CC79A7", "#56B4E9", "#767676")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+REFERENCE_LINES = ("-", "--", ":", "-.")
+FEW, MANY = 12, 300  # points: a line with few of them shows each, a cloud of many has small ones
 Drawn = tuple[int, str, str, str]
 
 
@@ -41,24 +46,44 @@ def draw(sheets: list[Sheet], folder: Path) -> list[Drawn]:
 def _draw(figure: dict[str, Any], path: Path) -> None:
     sheet, axes = line_chart(figure["title"], figure["y"])
     axes.set_xlabel(figure["x"])
-    if figure["scale"] in ("log", "log-log"):
-        axes.set_yscale("log")
-    if figure["scale"] == "log-log":
-        axes.set_xscale("log")
     axes.margins(x=0.02)
-    references = [one for one in figure["series"] if one["style"] == "reference"]
-    others = [one for one in figure["series"] if one["style"] != "reference"]
-    for number, one in enumerate(references):
-        style = ("-", "--", ":", "-.")[number % 4]
-        axes.plot(one["x"], one["y"], color=BLACK, linestyle=style, linewidth=1.3, label=one["label"])
-    for number, one in enumerate(others):
+    if figure["scale"] == "log-log":
+        _take_logarithms(axes, figure["series"])
+    told = [one for one in figure["series"] if one["style"] in ("reference", "measured")]
+    found = [one for one in figure["series"] if one["style"] not in ("reference", "measured")]
+    for number, one in enumerate(told):
+        _plot(axes, one, BLACK, "s", REFERENCE_LINES[number % len(REFERENCE_LINES)], 1.3)
+    for number, one in enumerate(found):
         colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
-        if one["style"] == "points":
-            axes.plot(
-                one["x"], one["y"], marker, color=colour, markersize=4.5, markerfacecolor="none",
-                label=one["label"],
-            )  # fmt: skip
-        else:
-            axes.plot(one["x"], one["y"], color=colour, label=one["label"])
-    axes.legend(fontsize=9)
+        _plot(axes, one, colour, marker, ("-", "--")[number % 2], 1.9)
+    sheet.legend(loc="outside lower center", ncols=2, fontsize=9)
     sheet.savefig(path, dpi=DPI)
+
+
+def _plot(axes: Axes, one: dict[str, Any], colour: str, marker: str, line: str, width: float) -> None:
+    points = one["style"] in ("points", "measured")
+    axes.plot(
+        one["x"],
+        one["y"],
+        color=colour,
+        linestyle="none" if points else line,
+        linewidth=width,
+        marker=marker if points or (one["style"] == "line" and len(one["x"]) < FEW) else None,
+        markersize=2.5 if len(one["x"]) > MANY else 5,
+        markerfacecolor=colour if one["style"] == "measured" else "none",
+        label=one["label"],
+    )
+
+
+def _take_logarithms(axes: Axes, series: list[dict[str, Any]]) -> None:
+    """Logarithmic axes with plain numbers; where every x is one of a few, those are the ticks."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+    values = sorted({x for one in series for x in one["x"]})
+    if len(values) < FEW:
+        axes.set_xticks(values)
+        axes.xaxis.set_minor_locator(NullLocator())

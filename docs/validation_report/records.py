@@ -24,8 +24,3 @@ def clear(folder: Path) -> None:
     for pattern in ("*.json", "*.partial"):
         for path in folder.glob(pattern):
             path.unlink()
-
-
-def ended(sheet: Sheet) -> bool:
-    """Whether the test came to an end, well or not."""
-    return sheet["status"] != "running"

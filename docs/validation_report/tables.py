@@ -54,6 +54,7 @@ class Section:
     lines: dict[str, Line] = field(default_factory=dict)
     figures: list[tuple[str, str, str]] = field(default_factory=list)
     silent: int = 0
+    skipped: int = 0
 
     def add(self, line: Line) -> None:
         other = self.lines.get(line.test)
@@ -93,6 +94,7 @@ def collect(sheets: list[Sheet], drawn: list[tuple[int, str, str, str]]) -> dict
             sections[number].add(line)
         if not lines and sheet["status"] == "passed":
             sections[sheet["section"]].silent += 1
+        sections[sheet["section"]].skipped += sheet["status"] == "skipped"
     for number, name, title, caption in drawn:
         sections[number].figures.append((name, title, caption))
     return sections
@@ -102,13 +104,13 @@ def report(sheets: list[Sheet], drawn: list[tuple[int, str, str, str]]) -> str:
     """The whole page."""
     parts = [HEAD, f"{tally(sheets)}\n", machine(sheets)]
     for number, section in collect(sheets, drawn).items():
-        if not (section.lines or section.silent or section.figures):
+        if not (section.lines or section.silent or section.skipped or section.figures):
             continue
         parts.append(f"## {number}. {section.title}\n" if number else f"## {section.title}\n")
         if section.lines:
             parts.append(_table(section))
-        if section.silent:
-            parts.append(_silent(section))
+        if section.silent or section.skipped:
+            parts.append(_remarks(section))
         for name, title, caption in section.figures:
             parts.append(f"![{title}](images/validation/{name}.png)\n")
             if caption:
@@ -125,10 +127,15 @@ def _table(section: Section) -> str:
     return "\n".join(rows) + "\n"
 
 
-def _silent(section: Section) -> str:
+def _remarks(section: Section) -> str:
+    remarks = []
     if section.silent == 1:
-        return "1 more test, without a number of its own, passed.\n"
-    return f"{section.silent} more tests, without numbers of their own, passed.\n"
+        remarks.append("1 more test, without a number of its own, passed.")
+    elif section.silent:
+        remarks.append(f"{section.silent} more tests, without numbers of their own, passed.")
+    if section.skipped:
+        remarks.append(f"**Not measured: {section.skipped} that were skipped.**")
+    return " ".join(remarks) + "\n"
 
 
 def tally(sheets: list[Sheet]) -> str:

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import numba
 import pytest
-from sheet import Sheet
+from sheet import Sheet, done_before
 
 SHEET = pytest.StashKey[Sheet]()
 
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "section(number): section of the validation report that it belongs to")
+
+
+def pytest_collection_modifyitems(config, items):
+    done = [item for item in items if done_before(item.nodeid)]
+    if done:
+        config.hook.pytest_deselected(items=done)
+        items[:] = [item for item in items if item not in done]
 
 
 @pytest.fixture(autouse=True)

@@ -28,7 +28,22 @@ from typing import Any
 import numpy as np
 from bands import Band
 
-FOLDER = "MPMKIT_VALIDATION_RECORDS"
+FOLDER, RESUME = "MPMKIT_VALIDATION_RECORDS", "MPMKIT_VALIDATION_RESUME"
+
+
+def file_of(test: str) -> Path | None:
+    """Where the sheet of a test is kept; None where nothing is."""
+    folder = os.environ.get(FOLDER)
+    digest = hashlib.sha1(test.encode(), usedforsecurity=False).hexdigest()[:16]
+    return Path(folder) / f"{digest}.json" if folder else None
+
+
+def done_before(test: str) -> bool:
+    """Whether a run that is to be resumed has brought this test to an end."""
+    path = file_of(test)
+    if not os.environ.get(RESUME) or path is None or not path.exists():
+        return False
+    return json.loads(path.read_text(encoding="utf-8"))["status"] != "running"
 
 
 @dataclass(frozen=True)
@@ -75,6 +90,10 @@ class Curves:
     def reference(self, label: str, x: Any, y: Any) -> None:
         """The exact or independent solution."""
         self._add(label, x, y, "reference")
+
+    def measured(self, label: str, x: Any, y: Any) -> None:
+        """Points of an experiment."""
+        self._add(label, x, y, "measured")
 
     def _add(self, label: str, x: Any, y: Any, style: str) -> None:
         x, y = (np.asarray(values, dtype=float).tolist() for values in (x, y))
@@ -137,10 +156,8 @@ class Sheet:
 
     def keep(self) -> None:
         """Write the sheet to its file, if anybody asked for it."""
-        folder = os.environ.get(FOLDER)
-        if folder:
-            digest = hashlib.sha1(self.test.encode(), usedforsecurity=False).hexdigest()[:16]
-            path = Path(folder) / f"{digest}.json"
+        path = file_of(self.test)
+        if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
             content = {name: value for name, value in vars(self).items() if name not in ("rows", "curves")}
             content |= {name: [asdict(one) for one in getattr(self, name)] for name in ("rows", "curves")}

@@ -79,5 +79,5 @@ def test_front_of_the_surge(validate, request, numerics):
         y="Z = x/a",
         caption="Times of the simulation are less its offset.",
     )
-    chart.reference("Martin & Moyce 1952", T, Z)
+    chart.measured("Martin & Moyce 1952", T, Z)
     chart.line(f"mpmkit, {label} scheme, 16 cells wide", times - offset, front)

@@ -138,6 +138,15 @@ def test_exact_film_on_20_degrees(validate):
 
 
 @needed
+def test_exact_film_on_10_degrees(validate):
+    """From rest, 20 cells. The waves are fast, see ``Channel._settle``."""
+    flow = exact_film(10, 0.05, 20, waves=60.0)
+    flow.run_until_steady(1e-4, interval=0.05, at_most=5.0)
+    name = "Film on 10°, 50 mm, exact yield, 20 cells"
+    validate(f"{name}: surface speed", flow.plug_speed(), close_to(0.00290, rel=BAND), unit="m/s")
+
+
+@needed
 def test_exact_film_below_its_critical_thickness_stays(validate):
     """40 mm on 10°, where 43.1 mm would flow. It is left alone, and then pushed off at 10 mm/s, and stops.
 

@@ -178,6 +178,17 @@ def test_order_of_viscoplastic_flow(validate, shape):
     hold_to_the_order(validate, f"unit Bingham, {shape}", cells, errors)
 
 
+@needed
+def test_order_of_exact_viscoplastic_flow(validate):
+    """The accurate set-up, where no regularisation stands between the grid and the exact profile."""
+    cells, errors = [5, 10, 20], []
+    for n in cells:
+        flow = Channel(UNIT, 1.0, 1.0, cells=n, sound_speed=10.0, shear_modulus=50.0, **scheme())
+        flow.run_until_steady(1e-4, interval=0.1, at_most=20.0)
+        errors.append(flow.error(UNIT.speed(1.0, 1.0, flow.z)))
+    hold_to_the_order(validate, "unit Bingham, exact yield", cells, errors)
+
+
 def test_surface_excess_of_the_regularisation(validate):
     """The plug of the regularised fluid is tau0/(G m) faster, whatever the rest of the profile is."""
     for m in (20.0, 80.0):
