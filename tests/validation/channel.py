@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from accurate_setup import bingham, herschel_bulkley
 
 import mpmkit
 from mpmkit.registry import installed
@@ -66,10 +67,14 @@ class Fluid:
         return np.interp(z, edges, speed)
 
     def material(self, m: float | None = None, **more: Any) -> dict[str, Any]:
-        """As a case file writes it, by the simplest law that can."""
+        """As a case file writes it, by the simplest law that can; without m with an exact yield stress."""
         common = {"density": self.density, **more}
         if self.yield_stress == 0 and self.flow_index == 1:
             return {"law": "newtonian", "viscosity": self.consistency, **common}
+        if m is None:
+            if self.flow_index == 1:
+                return bingham(self.yield_stress, self.consistency, **common)
+            return herschel_bulkley(self.yield_stress, self.consistency, self.flow_index, **common)
         common |= {"yield_stress": self.yield_stress, "regularisation": m}
         if self.flow_index == 1:
             return {"law": "bingham", "plastic_viscosity": self.consistency, **common}
@@ -96,9 +101,11 @@ class Channel:
         normal_gravity: float = 0.0,
         free_surface: bool = False,
         fraction: float = 0.5,
+        shear_modulus: float | None = None,
         **scheme: Any,
     ) -> None:
         dx = height / cells
+        elastic = {} if shear_modulus is None else {"shear_modulus": shear_modulus}
         headroom = 2 * dx if free_surface else 0.0
         self.fluid, self.height, self.drive, self.m = fluid, height, drive, m
         self.normal_gravity, self.sound_speed = normal_gravity, sound_speed
@@ -121,7 +128,7 @@ class Channel:
                     "bodies": [
                         {
                             "shape": {"kind": "box", "lower": [0.0, 0.0], "upper": [2 * dx, height]},
-                            "material": fluid.material(m, sound_speed=sound_speed),
+                            "material": fluid.material(m, sound_speed=sound_speed, **elastic),
                         }
                     ],
                     "scheme": {"time_step": {"fraction": fraction}, **scheme},

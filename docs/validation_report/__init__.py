@@ -1,0 +1,1 @@
+"""The validation report: what the tests recorded, as tables and figures."""

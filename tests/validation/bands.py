@@ -1,0 +1,75 @@
+"""Bands: what a test expects of a number, how far it may be off, and how much of that it used up.
+
+The verdict in the validation report and the assertion of the test are this one comparison.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Band:
+    """From ``low`` to ``high``, ends included."""
+
+    low: float
+    high: float
+    expected: str
+    text: str
+    digits: int = 4
+    """Significant digits in which an obtained number is worth reading."""
+
+    def used(self, obtained: float) -> float:
+        """Part of the band that is used up: it holds up to 1, and never for what is not a number."""
+        if math.isnan(obtained):
+            return math.inf
+        if math.isfinite(self.low) and math.isfinite(self.high):
+            half = (self.high - self.low) / 2
+            off = abs(obtained - (self.low + self.high) / 2)
+            return off / half if half > 0 else (0.0 if off == 0 else math.inf)
+        if self.low <= obtained <= self.high:
+            limit, part = (self.high, obtained) if math.isinf(self.low) else (obtained, self.low)
+            return min(max(part / limit, 0.0), 1.0) if limit > 0 else 0.0
+        return math.inf
+
+    def holds(self, obtained: float) -> bool:
+        return bool(self.low <= obtained <= self.high)
+
+    def show(self, obtained: float) -> str:
+        return number(obtained, self.digits)
+
+
+def number(value: float, digits: int = 6) -> str:
+    """As a table shows it."""
+    return f"{value:.{digits}g}"
+
+
+def close_to(expected: float, *, rel: float = 0.0, abs: float = 0.0) -> Band:
+    """Expected ± the larger of ``rel`` times it and ``abs``."""
+    by_rel = rel * math.fabs(expected)
+    tolerance = max(by_rel, abs)
+    text = f"± {number(100 * rel, 3)} %" if by_rel >= abs and rel >= 1e-3 else f"± {number(tolerance, 2)}"
+    if by_rel >= abs and rel < 1e-3:
+        text = f"± {number(rel, 2)} relative"
+    resolved = math.log10(math.fabs(expected) / tolerance) if expected and tolerance else 2.0
+    digits = min(max(math.ceil(resolved) + 2, 3), 9)
+    return Band(expected - tolerance, expected + tolerance, number(expected, max(digits, 6)), text, digits)
+
+
+def below(limit: float, expected: str | None = None) -> Band:
+    """At most this; ``expected`` says what it ideally is, if anything."""
+    text = f"≤ {number(limit, 3)}"
+    return Band(-math.inf, limit, expected or text, text, 3)
+
+
+def above(limit: float, expected: str | None = None) -> Band:
+    """At least this."""
+    text = f"≥ {number(limit, 3)}"
+    return Band(limit, math.inf, expected or text, text)
+
+
+def between(low: float, high: float, expected: str | None = None) -> Band:
+    """From low to high."""
+    text = f"{number(low)} to {number(high)}"
+    return Band(low, high, expected or text, text)

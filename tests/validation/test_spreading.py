@@ -1,0 +1,120 @@
+"""Newtonian sheets that spread under their own weight, on a slip floor and on a stick floor."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from accurate_setup import needed, scheme
+from bands import close_to
+from clock import at
+
+import mpmkit
+
+pytestmark = pytest.mark.section(4)
+
+DENSITY, G = 1000.0, 9.81
+
+
+def disc(radius, height, viscosity, floor, cells, far, factor, **numerics):
+    """A round sheet, ``cells`` high."""
+    dx = height / cells
+    return mpmkit.Simulation(
+        mpmkit.parse_case(
+            {
+                "space": "axisymmetric",
+                "until": 1e3,
+                "grid": {
+                    "cell_size": dx,
+                    "domain": {"r": [0.0, math.ceil(far / dx) * dx], "z": [0.0, height + 2 * dx]},
+                    "faces": {"z_min": floor},
+                },
+                "bodies": [
+                    {
+                        "shape": {"kind": "box", "lower": [0.0, 0.0], "upper": [radius, height]},
+                        "material": {
+                            "law": "newtonian",
+                            "density": DENSITY,
+                            "viscosity": viscosity,
+                            "sound_speed": {"factor": factor},
+                        },
+                    }
+                ],
+                "scheme": numerics,
+            }
+        )
+    )
+
+
+# The default takes half of the viscous limit, all that USL bears inside a body; a free edge bears less.
+SCHEMES = [
+    pytest.param({"time_step": {"fraction": 0.25}}, id="default"),
+    pytest.param(scheme(), id="accurate", marks=needed),
+]
+
+
+@pytest.mark.parametrize("numerics", SCHEMES)
+def test_free_slip_sheet_thins_at_its_rate(validate, request, numerics):
+    """v_r = e r with e = rho g H / (12 mu), away from the edge, while H falls as dH/dt = -2 e H.
+
+    The radial stress of a wide sheet without friction averages to nothing over its height, the vertical one
+    to -rho g H/2, and their difference is 6 mu e. So H = H0/(1 + rho g H0 t/(6 mu)). The edge is felt about
+    a height inwards; momentum spreads over the radius in rho R²/(pi² mu), 0.03 s.
+    """
+    radius, height, viscosity = 0.8, 0.1, 2000.0
+    simulation = disc(radius, height, viscosity, "slip", 4, 1.2, 20, **numerics)
+    p = simulation.particles
+    weight = DENSITY * G / viscosity
+    times = np.linspace(0.0, 0.6, 21)
+    rates, expected = [], []
+    for t in at(simulation, times):
+        inside = p.position[:, 0] < radius / 2
+        r, v = p.position[inside, 0], p.velocity[inside, 0]
+        rates.append(float(np.sum(p.mass[inside] * v * r) / np.sum(p.mass[inside] * r * r)))
+        expected.append(weight * height / (1 + weight * height * t / 6) / 12)
+    name = f"Newtonian sheet, slip floor, {request.node.callspec.id}"
+    for k in (10, 20):
+        row = f"{name}: thinning rate at {times[k]:g} s"
+        validate(row, rates[k], close_to(expected[k], rel=0.05), unit="1/s")
+    chart = validate.figure(
+        "free_slip_sheet", "A Newtonian sheet on a slip floor", x="time (s)", y="rate of spreading e (1/s)"
+    )
+    chart.reference("rho g H / (12 mu)", times, expected)
+    chart.points(f"mpmkit, {request.node.callspec.id} scheme, 4 cells high", times, rates)
+
+
+@needed
+@pytest.mark.parametrize(
+    ("cells", "aspect", "galilei", "until"),
+    [(12, 3, 100, 160), pytest.param(16, 4, 30, 100, marks=pytest.mark.slow)],
+    ids=["coarse", "fine"],
+)
+def test_huppert(validate, cells, aspect, galilei, until):
+    """R = 0.894 (g V³/(3 nu))^(1/8) t^(1/8) on a stick floor, Huppert, J. Fluid Mech. 121 (1982) 43-58.
+
+    A cylinder of some aspect R/H forgets where it came from while t grows to many times the instant T0 at
+    which the similarity solution has its radius. Inertia, of (H/R)² Ga with Ga = g H³/nu², is then nothing;
+    what is left is the square of its slope.
+    """
+    height, radius, nu = 0.1, 0.1 * aspect, math.sqrt(G * 0.1**3 / galilei)
+    volume = math.pi * radius**2 * height
+    factor = 0.894 * (G * volume**3 / (3 * nu)) ** (1 / 8)
+    scale = (radius / factor) ** 8
+    simulation = disc(radius, height, DENSITY * nu, "stick", cells, 2.1 * radius, 10, **scheme())
+    p, times = simulation.particles, scale * np.geomspace(2, until, 24)
+    front = [float((p.position[:, 0] + p.half_size[:, 0]).max()) for _ in at(simulation, times)]
+    for k in (-4, -1):
+        name = f"Huppert spreading, stick floor, {cells} cells high, R = {aspect} H at the start"
+        name += f": R at {times[k] / scale:.0f} T0"
+        validate(name, front[k], close_to(factor * times[k] ** (1 / 8), rel=0.05), unit="m")
+    chart = validate.figure(
+        "huppert",
+        "A Newtonian drop on a stick floor",
+        x="time over T0",
+        y="radius over the initial one",
+        scale="log-log",
+    )
+    scaled = times / scale
+    chart.reference("Huppert 1982", scaled, scaled ** (1 / 8))
+    chart.points(f"mpmkit, {cells} cells high, R = {aspect} H at the start", scaled, np.array(front) / radius)
