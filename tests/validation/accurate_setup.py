@@ -9,10 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
-from mpmkit.registry import installed
-
 SCHEME: dict[str, Any] = {
     "shape": "cpgimp",
     "order": "usl",
@@ -20,8 +16,13 @@ SCHEME: dict[str, Any] = {
     "volumetric": "nodal-average",
     "time_step": {"fraction": 0.4},
 }
-SOUND_SPEED: dict[str, float] = {"factor": 10}
-"""Of a body that falls from its own height: density within 1 % of its own."""
+PAPER: dict[str, Any] = {
+    "shape": {"name": "cpgimp", "domain": "fixed"},
+    "order": "usl",
+    "velocity": "flip",
+    "volumetric": "own",
+}
+"""The set-up of Ferreira et al.: to every particle its own pressure, and a box that stays as it was."""
 
 
 def bingham(yield_stress: float, plastic_viscosity: float, **more: Any) -> dict[str, Any]:
@@ -47,13 +48,3 @@ def stiff(density: float, speed: float) -> dict[str, float]:
 def scheme(**changes: Any) -> dict[str, Any]:
     """The accurate scheme with some keys changed."""
     return {**SCHEME, **changes}
-
-
-NEEDED = {
-    "velocity": ["apic"],
-    "volumetric": ["nodal-average"],
-    "law": ["bingham-evp", "herschel-bulkley-evp"],
-}
-MISSING = [name for kind, names in NEEDED.items() for name in names if name not in installed().of_kind(kind)]
-needed = pytest.mark.skipif(bool(MISSING), reason=f"not registered: {', '.join(MISSING)}")
-"""Marks a test that needs the accurate set-up."""

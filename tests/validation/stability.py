@@ -9,6 +9,7 @@ import numpy as np
 
 import mpmkit
 
+FLIP = {"velocity": "flip", "volumetric": "own"}
 SIZE = 1e-6  # of the velocities tried, m/s: everything stays linear, and nothing moves
 
 
@@ -49,7 +50,7 @@ def block(
                         "particles_per_cell": per_cell,
                     }
                 ],
-                "scheme": scheme,
+                "scheme": FLIP | scheme,
             }
         )
     )
@@ -79,7 +80,7 @@ def free_bar(material: dict[str, Any], shape: str, poke: float) -> mpmkit.Simula
                         "particles_per_cell": [2, 1],
                     }
                 ],
-                "scheme": {"shape": shape},
+                "scheme": FLIP | {"shape": shape},
             }
         )
     )

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import pytest
-from accurate_setup import needed, scheme
+from accurate_setup import PAPER, scheme
 from bands import between
 from clock import at
 
@@ -54,14 +54,14 @@ def column(cells, **scheme):
 
 
 @pytest.mark.parametrize(
-    "numerics", [pytest.param({}, id="default"), pytest.param(scheme(), id="accurate", marks=needed)]
+    "numerics", [pytest.param(PAPER, id="paper's"), pytest.param(scheme(), id="accurate")]
 )
 def test_front_of_the_surge(validate, request, numerics):
     simulation, label = column(16, **numerics), request.node.callspec.id
     times = np.linspace(0, 3.7, 75)
     p, front = simulation.particles, []
     for _ in at(simulation, times * UNIT):
-        front.append(float((p.position[:, 0] + p.half_size[:, 0]).max()) / WIDTH)
+        front.append(float((p.position[:, 0] + p.box[:, 0]).max()) / WIDTH)
     T, Z = np.array(list(MEASURED)), np.array(list(MEASURED.values()))
     offsets = np.linspace(-0.3, 0.3, 61)
     worst = [np.abs(np.interp(T + offset, times, front) / Z - 1).max() for offset in offsets]
