@@ -187,7 +187,7 @@ BAD = [
     (
         "scheme.shape",
         {"name": "cpgimp", "domain": "strech"},
-        '"strech"; it must be "fixed", "stretch" or "volume"',
+        '"strech"; it must be "strain", "fixed", "stretch" or "volume"',
     ),
     (
         f"{MATERIAL}.equation_of_state",

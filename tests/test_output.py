@@ -299,7 +299,8 @@ class TestSummary:
         assert first_crossing(range(len(values)), values, 0.5) is None
 
     def summary(self, history: History, **changes) -> dict:
-        given = {"particles": 10, "steps": 20, "wall_time": 4.0, "stopped_because": "end", "plugins": {}}
+        given = {"particles": 10, "particle_steps": 200, "steps": 20, "wall_time": 4.0}
+        given |= {"stopped_because": "end", "plugins": {}}
         return summarise(history.dataset(), **{**given, **changes})
 
     def test_keys_and_values(self):

@@ -97,7 +97,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
             }
             frames.write(time, step, fields, position)
     history.write(run.history)
-    numbers = {"particles": len(start), "steps": len(times), "wall_time": 2.0}
+    numbers = {"particle_steps": 1000, "particles": len(start), "steps": len(times), "wall_time": 2.0}
     write_json(
         run.summary, summarise(history.dataset(), **numbers, stopped_because="end of the run", plugins={})
     )

@@ -13,9 +13,10 @@ HERE, STRAYED, LOST = range(3)
 
 @kernel()
 def locate(
-    position, half_size, extent, inverse_cell, slabs, slab_width, first_slab, window_low, window_high, verdicts,
+    position, half_size, extent, inverse_cell, slabs, slab_width, first_slab, window_low, window_high,
+    verdicts,
 ):  # fmt: skip
-    """Check all particles, their domains too. Returns the worst verdict and, where it is ``LOST``, the particle.
+    """Check all particles and their domains. Returns the worst verdict and the particle that is ``LOST``.
 
     A particle may drift anywhere between the cells ``window_low`` and ``window_high``, but along the first
     axis no more than one cell beyond its slab. ``verdicts`` is scratch, two integers a chunk.

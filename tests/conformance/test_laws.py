@@ -200,7 +200,7 @@ def test_simple_shear_gives_a_shear_stress(law, along, across):
 
 @every_law
 def test_work_is_stored_or_dissipated_never_gained(law):
-    """∫ J sigma:D dt ≥ the strain energy, which for a viscous fluid is zero: its stress does work at every rate.
+    """∫ J sigma:D dt ≥ the strain energy, zero for a viscous fluid, whose stress does work at every rate.
 
     The spring of a law that relaxes is that of a nearly incompressible material, and is tried without change
     of volume.
