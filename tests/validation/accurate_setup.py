@@ -2,7 +2,7 @@
 
 Yield by return mapping, so that the material truly arrests and no viscous limit binds the step; volumetric
 rate and pressure averaged through the grid, so that nothing locks; an affine velocity update, whose damping
-is physical.
+is physical; particles that are split before they are drawn apart.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ SCHEME: dict[str, Any] = {
     "order": "usl",
     "velocity": "apic",
     "volumetric": "nodal-average",
+    "splitting": True,
     "time_step": {"fraction": 0.4},
 }
 PAPER: dict[str, Any] = {
