@@ -49,7 +49,7 @@ def disc(radius, height, viscosity, floor, cells, far, factor, **numerics):
 
 # USL bears half of the viscous limit inside a body; at a free edge it bears less.
 SCHEMES = [
-    pytest.param(PAPER | {"time_step": {"fraction": 0.25}}, id="paper's"),
+    pytest.param(PAPER | {"time_step": {"fraction": 0.25}}, id="paper"),
     pytest.param(scheme(), id="accurate"),
 ]
 
@@ -73,7 +73,7 @@ def test_free_slip_sheet_thins_at_its_rate(validate, request, numerics):
         r, v = p.position[inside, 0], p.velocity[inside, 0]
         rates.append(float(np.sum(p.mass[inside] * v * r) / np.sum(p.mass[inside] * r * r)))
         expected.append(weight * height / (1 + weight * height * t / 6) / 12)
-    name = f"Newtonian sheet, slip floor, {request.node.callspec.id}"
+    name = f"Newtonian sheet, slip floor, {request.node.callspec.id} set-up"
     for k in (10, 20):
         row = f"{name}: thinning rate at {times[k]:g} s"
         validate(row, rates[k], close_to(expected[k], rel=0.05), unit="1/s")
@@ -81,7 +81,7 @@ def test_free_slip_sheet_thins_at_its_rate(validate, request, numerics):
         "free_slip_sheet", "A Newtonian sheet on a slip floor", x="time (s)", y="rate of spreading e (1/s)"
     )
     chart.reference("rho g H / (12 mu)", times, expected)
-    chart.points(f"mpmkit, {request.node.callspec.id} scheme, 4 cells high", times, rates)
+    chart.points(f"mpmkit, {request.node.callspec.id} set-up, 4 cells high", times, rates)
 
 
 @pytest.mark.parametrize("cells", [8, pytest.param(12, marks=pytest.mark.slow)])
