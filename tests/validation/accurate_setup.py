@@ -2,26 +2,28 @@
 
 Yield by return mapping, so that the material truly arrests and no viscous limit binds the step; volumetric
 rate and pressure averaged through the grid, so that nothing locks; an affine velocity update, whose damping
-is physical.
+is physical; particles that are split before they are drawn apart.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
-from mpmkit.registry import installed
-
 SCHEME: dict[str, Any] = {
     "shape": "cpgimp",
     "order": "usl",
     "velocity": "apic",
     "volumetric": "nodal-average",
+    "splitting": True,
     "time_step": {"fraction": 0.4},
 }
-SOUND_SPEED: dict[str, float] = {"factor": 10}
-"""Of a body that falls from its own height: density within 1 % of its own."""
+PAPER: dict[str, Any] = {
+    "shape": {"name": "cpgimp", "domain": "fixed"},
+    "order": "usl",
+    "velocity": "flip",
+    "volumetric": "own",
+}
+"""The set-up of Ferreira et al.: to every particle its own pressure, and a box that stays as it was."""
 
 
 def bingham(yield_stress: float, plastic_viscosity: float, **more: Any) -> dict[str, Any]:
@@ -47,13 +49,3 @@ def stiff(density: float, speed: float) -> dict[str, float]:
 def scheme(**changes: Any) -> dict[str, Any]:
     """The accurate scheme with some keys changed."""
     return {**SCHEME, **changes}
-
-
-NEEDED = {
-    "velocity": ["apic"],
-    "volumetric": ["nodal-average"],
-    "law": ["bingham-evp", "herschel-bulkley-evp"],
-}
-MISSING = [name for kind, names in NEEDED.items() for name in names if name not in installed().of_kind(kind)]
-needed = pytest.mark.skipif(bool(MISSING), reason=f"not registered: {', '.join(MISSING)}")
-"""Marks a test that needs the accurate set-up."""

@@ -12,7 +12,7 @@ undeformed bar, rho0 ü = ∂P/∂X + rho0 b, then gives the body force per unit
     P'(F) = G (1 + 1/F²) + λ (1 - ln F)/F²,   ∂F/∂X = -4π²A sin(2πX) sin(2πct).
 
 How it acts in a step: the weak form has ∫ rho b·w, which on particles is f_I = Σ m_p b_p N_Ip, as gravity,
-f_I = Σ m_p g N_Ip, with a g of each particle. ``particles_to_nodes(b, mass_weighted=True)`` is
+f_I = Σ m_p g N_Ip, with a g of each particle. ``particles_to_nodes(b, "mass")`` is
 Σ m b N / Σ m N, so that its product with the nodal mass is that force, folded at the faces as any other; it
 is added right before the momentum equation, whatever the update order.
 
@@ -90,7 +90,7 @@ class Bar:
                             "particles_per_cell": [2, 1],
                         }
                     ],
-                    "scheme": {"time_step": {"fraction": fraction}, **scheme},
+                    "scheme": {"velocity": "flip", "time_step": {"fraction": fraction}, **scheme},
                 }
             )
         )
@@ -120,7 +120,7 @@ class Bar:
     def _solve_with_body_force(self, dt: float) -> None:
         force = body_force(self.rest, self.simulation.time, self.amplitude)
         nodes, along_x = self.operations.window.nodes, 1 + self.particles.dim
-        nodes[:, along_x] += nodes[:, 0] * self.operations.particles_to_nodes(force, mass_weighted=True)
+        nodes[:, along_x] += nodes[:, 0] * self.operations.particles_to_nodes(force, "mass")
         self._solve(dt)
 
     def error(self) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 import mpmkit
 
+FLIP = {"velocity": "flip", "volumetric": "own"}
 SIZE = 1e-6  # of the velocities tried, m/s: everything stays linear, and nothing moves
 
 
@@ -49,13 +50,15 @@ def block(
                         "particles_per_cell": per_cell,
                     }
                 ],
-                "scheme": scheme,
+                "scheme": FLIP | scheme,
             }
         )
     )
 
 
-def free_bar(material: dict[str, Any], shape: str, poke: float) -> mpmkit.Simulation:
+def free_bar(
+    material: dict[str, Any], shape: str, poke: float, per_cell: int = 2, **scheme
+) -> mpmkit.Simulation:
     """A bar of four cells that pokes a little into a fifth.
 
     With boxes it is the last box that reaches over the node, by ``poke`` of a cell; with points the last
@@ -76,14 +79,14 @@ def free_bar(material: dict[str, Any], shape: str, poke: float) -> mpmkit.Simula
                     {
                         "shape": {"kind": "box", "lower": [2.0, 0.0], "upper": [6.0, 1.0]},
                         "material": material,
-                        "particles_per_cell": [2, 1],
+                        "particles_per_cell": [per_cell, 1],
                     }
                 ],
-                "scheme": {"shape": shape},
+                "scheme": FLIP | {"shape": shape} | scheme,
             }
         )
     )
-    simulation.particles.position[:, 0] += poke + (0.25 if shape == "linear" else 0.0)
+    simulation.particles.position[:, 0] += poke + (0.5 / per_cell if shape == "linear" else 0.0)
     return simulation
 
 

@@ -67,20 +67,25 @@ def energy(simulation):
     return (found["kinetic_energy"] + found["strain_energy"]) / (ENERGY * simulation.grid.cell_size)
 
 
-def vibrate(cells, particles, shape, order, until=UNTIL):
+def vibrate(cells, particles, shape, order, until=UNTIL, chart=None):
     """Energy ratio at ``until`` and the largest on the way; infinite, and when, if the run diverges."""
     simulation = bar(cells, particles, shape, order)
     largest = energy(simulation)
+    times, energies = [0.0], [largest]
     with np.errstate(all="ignore"):
         while simulation.time < until - 1e-9:
             try:
                 simulation.advance(at_most=until - simulation.time)
                 if simulation.steps % 20 == 0:
-                    largest = max(largest, energy(simulation))
+                    times.append(simulation.time)
+                    energies.append(energy(simulation))
+                    largest = max(largest, energies[-1])
                     if not largest < 2:
                         return math.inf, math.inf, simulation.time
             except GuardStop:
                 return math.inf, math.inf, simulation.time
+    if chart is not None:
+        chart.line(order.upper(), times, energies)
     return energy(simulation), largest, simulation.time
 
 
@@ -118,7 +123,12 @@ def test_energy_with_cpgimp_at_50_cells(validate, order):
 @pytest.mark.parametrize("shape", ["linear", "cpgimp"])
 def test_energy_at_13_cells(validate, shape):
     """USL dissipates, USF feeds energy in; no particle crosses a cell."""
-    found = {order: vibrate(13, 1, shape, order)[0] for order in ("usf", "usl", "musl")}
+    title = "Energy of the vibrating bar, 13 cells, 1 particle"
+    chart = validate.figure(
+        f"bar_{shape}", f"{title}, {shape}", x="time (s)", y="energy over the initial one"
+    )
+    chart.reference("exact", [0, UNTIL], [1, 1])
+    found = {order: vibrate(13, 1, shape, order, chart=chart)[0] for order in ("usf", "usl", "musl")}
     assert found["usl"] < 1 < found["usf"]
     for order, ratio in found.items():
         name = energy_after(f"13 cells, 1 particle, {shape}", order)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from accurate_setup import needed, scheme
+from accurate_setup import scheme
 from bands import below, close_to
 from channel import Channel
 from fluids import UNIT
@@ -40,7 +40,6 @@ def test_regularised_fluid_nearly_stops(validate, drive, m, at_rest):
     draw_decay(validate, f"G = {drive:g}, regularised", times, shares)
 
 
-@needed
 @pytest.mark.parametrize("drive", AT_REST)
 def test_exact_fluid_stops(validate, drive):
     """With a yield stress by return mapping the discharge reaches zero, and that is the time of arrest.

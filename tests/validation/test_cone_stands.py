@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from accurate_setup import bingham, needed, scheme
+from accurate_setup import bingham, scheme
 from bands import above, below
 from clock import at
 
 import mpmkit
 
-pytestmark = [pytest.mark.section(4), needed]
+pytestmark = pytest.mark.section(4)
 
 HEIGHT, DENSITY, G = 0.3, 2574.0, 9.81
 WEIGHT = DENSITY * G * HEIGHT

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from accurate_setup import needed, scheme, stiff
+from accurate_setup import scheme, stiff
 from bands import below, close_to
 from channel import Channel, down_slope
 from fluids import BAND, CONCRETE
@@ -126,7 +126,6 @@ def exact_film(degrees: float, height: float, cells: int, *, waves: float) -> Ch
     return flow
 
 
-@needed
 def test_exact_film_on_20_degrees(validate):
     """From rest; the plug's steady speed is 56.42 mm/s."""
     flow = exact_film(20, 0.05, 10, waves=20.0)
@@ -137,7 +136,6 @@ def test_exact_film_on_20_degrees(validate):
     validate(f"{name}: profile, L2 error", error, below(BAND))
 
 
-@needed
 def test_exact_film_on_10_degrees(validate):
     """From rest, 20 cells. The waves are fast, see ``Channel._settle``."""
     flow = exact_film(10, 0.05, 20, waves=60.0)
@@ -146,7 +144,6 @@ def test_exact_film_on_10_degrees(validate):
     validate(f"{name}: surface speed", flow.plug_speed(), close_to(0.00290, rel=BAND), unit="m/s")
 
 
-@needed
 def test_exact_film_below_its_critical_thickness_stays(validate):
     """40 mm on 10°, where 43.1 mm would flow. It is left alone, and then pushed off at 10 mm/s, and stops.
 

@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 import pytest
-from accurate_setup import SCHEME, needed
+from accurate_setup import SCHEME
 from bands import below, close_to
 
 import mpmkit
@@ -121,7 +121,6 @@ def draw_pressure(validate, simulation, name):
     chart.points(f"{name}, {CELLS} cells", mean_pressure(p), p.position[:, 1])
 
 
-@needed
 @pytest.mark.parametrize("space", SPACES)
 def test_accurate_setup_rests_as_well(validate, space):
     """Averaged through the grid the pressure is a straight line, not a staircase."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from accurate_setup import needed, scheme
+from accurate_setup import scheme
 from bands import above, below, close_to
 from channel import Channel, down_slope, names, observed_order
 from fluids import BAND, CONCRETE, PLASTIC, UNIT, WATER
@@ -100,7 +100,6 @@ def draw_errors(validate, name: str, cells: list[int], errors: list[float]) -> N
     chart.points(name, cells, errors)
 
 
-@needed
 @pytest.mark.parametrize(
     ("fluid", "name", "height", "drive", "plug", "discharge"),
     [
@@ -178,7 +177,6 @@ def test_order_of_viscoplastic_flow(validate, shape):
     hold_to_the_order(validate, f"unit Bingham, {shape}", cells, errors)
 
 
-@needed
 def test_order_of_exact_viscoplastic_flow(validate):
     """The accurate set-up, where no regularisation stands between the grid and the exact profile."""
     cells, errors = [5, 10, 20], []

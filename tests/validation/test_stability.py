@@ -8,6 +8,7 @@ dt < 2/√λ with λ the largest eigenvalue of A. Two particles an axis stand at
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -97,6 +98,31 @@ def test_limit_of_a_nearly_empty_node_cpgimp(validate):
     validate(
         "Limit at a free surface, cpgimp, wherever the last box ends: the smallest", worst, above(4 / largest)
     )
+
+
+@pytest.mark.parametrize("per_cell", [8, 16])
+def test_limits_at_the_surface_of_thinned_material(validate, per_cell):
+    """Boxes of w cells, as material that was thinned has them: 2 w of the viscous limit, √(2 w) of dx/c.
+
+    A box that just reaches over a node by ε gives it N = ε²/(2 w) and ε/(w dx), and so λ = 4/3 mu V (ε/w dx)²
+    over rho V ε²/(2 w): 8/3 mu/(rho w dx²), or 2 c²/(w dx²). USL, whose stress follows the grid's velocity,
+    has to obey that. To the particles, and so to USF and MUSL, such a node means next to nothing.
+    """
+    w = 1 / per_cell
+    pokes = [part * w for part in (0.01, 0.1, 0.3)]
+
+    def bar(material, poke=pokes[1], **order):
+        return free_bar(material, "cpgimp", poke, per_cell, **order)
+
+    name = f"Limit at a free surface, cpgimp, boxes 1/{per_cell} cell thick"
+    found = min(grid_limit(bar(OIL, poke), per_cell / 2) for poke in pokes)
+    validate(f"{name}, viscous: of that inside", found, close_to(2 * w, rel=0.05))
+    found = min(grid_limit(bar(GAS, poke), per_cell / 2) for poke in pokes)
+    validate(f"{name}, acoustic: of that inside", found, close_to(math.sqrt(2 * w), rel=0.05))
+    for order in ("usl", "usf", "musl"):
+        found = critical_step(partial(bar, RUBBER, order=order), ACOUSTIC / WAVE)
+        band = below(math.sqrt(2 * w), "no more") if order == "usl" else above(1.0)
+        validate(f"{name}, {order.upper()} by trying: of dx/c", found, band)
 
 
 def expected_limits(order: str, cells: int) -> tuple[float, float]:
