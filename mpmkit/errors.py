@@ -37,3 +37,11 @@ class OutputError(MpmkitError):
     """Results could not be written: disk full, no permission, directory taken."""
 
     exit_status = 4
+
+
+def reason(error: BaseException) -> str:
+    """What an error says, in one line; for one that was not written to be read, its name as well."""
+    text = " ".join(str(error).split())
+    if isinstance(error, MpmkitError):
+        return text
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .case.model import Case
-from .errors import GuardStop
+from .errors import GuardStop, reason
 from .memory import require_memory
 from .output import RunDirectory, open_log, summarise, write_json
 from .provenance import attributes, plugins_used, resolved
@@ -84,10 +84,15 @@ def run(
 
 
 def _report(case: Case, directory: RunDirectory) -> None:
-    if case.output.report:
+    """Draw the pictures. They can be drawn again from the directory: none is worth the outcome of a run."""
+    if not case.output.report:
+        return
+    try:
         from .report import write_report
 
         write_report(directory.path)
+    except Exception as error:
+        LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
 
 
 def _execute(
