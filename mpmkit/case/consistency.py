@@ -5,6 +5,7 @@ Each is broken with one sentence that names the field, the value, and what is al
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -147,6 +148,10 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
         raise ValueError(
             f"{field} is a factor of √(2 g h), but gravity is {case.gravity}; give the speed itself, in m/s"
         )
+    speed = case.sound_speed(material)
+    if speed is not None and not math.isfinite(material.density * speed * speed):
+        given = f"{material.sound_speed:g}" if isinstance(material.sound_speed, float) else f"{speed:g} m/s"
+        raise ValueError(f"{field} is {given}, so that density times its square is too large for a number")
 
 
 def _check_time_step(case: Case) -> None:
