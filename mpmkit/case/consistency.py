@@ -6,11 +6,12 @@ Each is broken with one sentence that names the field, the value, and what is al
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .allowed import shown
+from .allowed import nearest, shown
 
 if TYPE_CHECKING:
     from .model import Case, Material
@@ -70,6 +71,7 @@ def _check_domain(case: Case) -> None:
         if axis not in axes:
             raise ValueError(
                 f"grid.domain has an axis '{axis}'; the space '{case.space}' has the axes {', '.join(axes)}"
+                f"{_meant(axis, axes)}"
             )
     for axis in axes:
         if axis not in domain:
@@ -104,6 +106,16 @@ def _check_faces(case: Case) -> None:
         if name not in names:
             raise ValueError(
                 f"grid.faces has '{name}'; the faces of the space '{case.space}' are {', '.join(names)}"
+                f"{_meant(name, names)}"
+            )
+    if case.space_.radial:
+        for name in ("r_min", "r_max"):
+            if faces.get(name) == "periodic":
+                raise ValueError(f'grid.faces.{name} is "periodic"; the radial axis has no period')
+        if faces.get("r_min", "symmetry") != "symmetry":
+            raise ValueError(
+                f"grid.faces.r_min is {shown(faces['r_min'])}; at the axis of symmetry it must be "
+                '"symmetry" or left out'
             )
     for axis in case.space_.axes:
         pair = [faces.get(f"{axis}_{side}") for side in ("min", "max")]
@@ -111,14 +123,11 @@ def _check_faces(case: Case) -> None:
             raise ValueError(
                 f"grid.faces: {axis}_min and {axis}_max must both be 'periodic' if one of them is"
             )
-    if case.space_.radial:
-        if "periodic" in (faces.get("r_min"), faces.get("r_max")):
-            raise ValueError("grid.faces: the radial axis cannot be 'periodic'")
-        if faces.get("r_min", "symmetry") != "symmetry":
-            raise ValueError(
-                f"grid.faces.r_min is {shown(faces['r_min'])}; at the axis of symmetry it must be "
-                '"symmetry" or left out'
-            )
+
+
+def _meant(word: str, allowed: Iterable[str]) -> str:
+    near = nearest(word, allowed)
+    return "" if near is None else f"; did you mean '{near}'?"
 
 
 def _check_particles_per_cell(field: str, value: int | list[int] | None, case: Case) -> None:
