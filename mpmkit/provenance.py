@@ -50,6 +50,8 @@ def resolved(case: Case) -> dict[str, Any]:
     data["output"]["frame_interval"] = case.output.frame_interval or case.until / FRAMES
     for body, entry in zip(case.bodies, data["bodies"], strict=True):
         entry["particles_per_cell"] = list(particles_along_axes(body, case.space_.dim))
+        if entry["shape"].get("base", ...) is None:
+            entry["shape"]["base"] = [0.0] * case.space_.dim
         entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
     return data
 

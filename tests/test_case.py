@@ -11,6 +11,7 @@ from mpmkit.case import case_schema, load_case, parse_case
 from mpmkit.case.allowed import Place
 from mpmkit.errors import CaseError
 from mpmkit.memory import require_memory
+from mpmkit.provenance import resolved
 from mpmkit.registry import installed
 from mpmkit.solver.scene import make_particles
 
@@ -323,6 +324,27 @@ def test_too_much_memory_is_refused_before_anything_is_made():
     kept["grid"]["cell_size"] = 1e-4
     kept["output"]["history_interval"] = 2e-6
     assert "fewer rows" in sentence(require_memory, parse_case(kept))
+
+
+def test_bodies_far_apart_are_told_what_takes_the_memory():
+    far = changed("grid.domain", {"x": [-25_000, 25_000], "z": [0, 25_000]})
+    other = copy.deepcopy(far["bodies"][0])
+    other["shape"] |= {"lower": [20_000, 20_000], "upper": [20_000.4, 20_000.4]}
+    far["bodies"].append(other)
+    text = sentence(require_memory, parse_case(far))
+    assert "the window over all bodies, the gap between them included, spans 2e+04 × 2e+04 m: its" in text
+    assert "or bring the bodies closer together" in text
+
+
+def test_a_resolved_case_says_where_a_body_stands_and_can_be_run():
+    body = {
+        "shape": {"kind": "cylinder", "radius": 0.2, "height": 0.4},
+        "material": GOOD["bodies"][0]["material"],
+    }
+    grid = {"cell_size": 0.1, "domain": {"x": [-1, 1], "z": [0, 1]}}
+    case = resolved(parse_case(GOOD | {"bodies": [body], "grid": grid}))
+    assert case["bodies"][0]["shape"]["base"] == [0.0, 0.0]
+    assert resolved(parse_case(case)) == case
 
 
 @pytest.mark.parametrize(
