@@ -14,14 +14,13 @@ from .layout import Layout
 from .particles import Particles
 from .time_step import limits
 
-
 LEAST_WIDTH = 0.25
 """Width, in cells, below which a domain that follows the strain does not get, unless it began with less.
 
 At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
-e²/2w and the gradient e/w, of which the force needs the square over the weight, 2/w: where a box gets thin
-its own node gets stiff. USL, which takes its stress from that node, bears √(2 w) of dx/c and 2 w of the viscous
-limit: at a quarter of a cell, 0.7 and 0.5.
+e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
+thin, such a node gets stiff. USL, which takes its stress from that node, bears √(2 w) of dx/c and 2 w of the
+viscous limit: at a quarter of a cell, 0.7 and 0.5.
 """
 
 
