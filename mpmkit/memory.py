@@ -50,13 +50,15 @@ def bytes_per_particle(case: Case) -> int:
     """State of a particle, its tables of weights, and its share of a sort."""
     dim, support = case.space_.dim, case.scheme.shape.support
     laws = [body.material.constitutive_law for body in case.bodies]
-    number_mass_volumes_pressure_rate = 8
-    vectors = 4 * dim
+    number_mass_volumes_pressures_rate = 8
+    vectors = 5 * dim
+    affine = (dim * dim + dim * support) * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
     doubles = (
-        number_mass_volumes_pressure_rate
+        number_mass_volumes_pressures_rate
         + vectors
+        + affine
         + gradient_and_stress
         + 9 * tracks_deformation(case)
         + state

@@ -54,7 +54,7 @@ def test_expected_memory_is_that_of_the_arrays(file, overrides):
     simulation.operations.begin()
     n, operations = len(simulation.particles), simulation.operations
     assert expected_particles(case) == pytest.approx(n, rel=0.01)
-    tables = operations.base, operations.weight, operations.gradient, operations.hoop
+    tables = operations.base, operations.weight, operations.gradient, operations.hoop, operations.slope
     held = simulation.particles.nbytes + sum(table.nbytes for table in tables)
     assert bytes_per_particle(case) - 8 * SORTING == pytest.approx(held / n, rel=0.1)
     assert window_nodes(case) == pytest.approx(1.25 * len(operations.window.nodes), rel=0.25)

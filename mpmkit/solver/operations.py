@@ -55,7 +55,7 @@ class SceneOperations:
         self.weight = np.zeros((n, dim, support))
         self.gradient = np.zeros((n, dim, support))
         self.hoop = np.zeros((n, support if self.radial else 0))
-        self._slope = np.zeros((n, dim, support) if self.scheme.velocity.affine else (0, dim, support))
+        self.slope = np.zeros((n, dim, support) if self.scheme.velocity.affine else (0, dim, support))
         self._no_hoop = np.zeros((n, 0))
         self._rate = np.zeros(n)
 
@@ -72,6 +72,12 @@ class SceneOperations:
             base, weight, gradient = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
             shape.fill_radial(p.position[:, 0], p.half_size[:, 0], dx, base, weight, gradient, self.hoop)
         return None
+
+    def start(self) -> None:
+        """Before the first step: read the affine part of an initial velocity off the grid."""
+        if self.scheme.velocity.affine and self.particles.velocity.any():
+            self.map_to_grid(forces=False)
+            self.update_affine()
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
@@ -128,9 +134,9 @@ class SceneOperations:
 
     def update_affine(self) -> None:
         p, w = self.particles, self.window
-        gather.affine_slopes(self.weight, self.cell_size, self._slope)
+        gather.affine_slopes(self.weight, self.cell_size, self.slope)
         self._gradient(
-            w.nodes, w.strides, w.lower, self.base, self.weight, self._slope, self._no_hoop, p.affine
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.slope, self._no_hoop, p.affine
         )
 
     def update_velocity_gradient(self) -> None:

@@ -81,6 +81,8 @@ class Simulation:
             self._stop(error.particle, scattered=True)
         if lost is not None:
             self._stop(lost)
+        if self.steps == 0:
+            self.operations.start()
         dt = min(self.time_step, at_most)
         self.operations.step(dt)
         self.time += dt

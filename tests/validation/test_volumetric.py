@@ -115,7 +115,10 @@ def energy(simulation):
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 @pytest.mark.parametrize("space", ["plane-strain", "axisymmetric"])
 def test_energy_of_a_swinging_block(validate, space, order):
-    """An inviscid block that swings against its walls: the energy strays by what the step is, and no more."""
+    """An inviscid block that swings against its walls: the stray of the energy is of the order of the step.
+
+    With USL, and any treatment, of its root: its stress comes from nodes at the surface, nearly empty ones.
+    """
     strays = []
     for fraction in (0.1, 0.05):
         simulation = block(
@@ -131,5 +134,7 @@ def test_energy_of_a_swinging_block(validate, space, order):
         strays.append(worst)
     name = f"Inviscid block, {space}, {order.upper()}, nodal-average"
     validate(
-        f"{name}: stray of the energy, half the step over the whole", strays[1] / strays[0], below(0.7, "1/2")
+        f"{name}: stray of the energy, half the step over the whole",
+        strays[1] / strays[0],
+        below(0.8, "√1/2") if order == "usl" else below(0.6, "1/2"),
     )
