@@ -6,15 +6,10 @@
 >>> history.spread_diameter.plot()
 """
 
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
-try:
-    __version__ = version("mpmkit")
-except PackageNotFoundError:  # a checkout that is not installed
-    __version__ = "0.0.0"
-
 if TYPE_CHECKING:
+    __version__: str
     from .case import Case, load_case, parse_case
     from .runner import run
     from .solver.simulation import Simulation
@@ -31,9 +26,21 @@ _HOME = {
 
 
 def __getattr__(name: str) -> Any:
-    # Loaded when asked for: a plug-in that imports mpmkit.contracts must not pull in the solver.
+    # Loaded when asked for: a plug-in that imports mpmkit.contracts must not pull in the solver, and the
+    # command line should have taken hold of Ctrl-C before anything takes its time.
+    if name == "__version__":
+        return _version()
     if name in _HOME:
         from importlib import import_module
 
         return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'mpmkit' has no attribute '{name}'")
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("mpmkit")
+    except PackageNotFoundError:  # a checkout that is not installed
+        return "0.0.0"

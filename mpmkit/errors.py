@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import textwrap
+
+LONGEST_REASON = 300
+"""Characters that are repeated of an error that is not our own."""
+
 
 class MpmkitError(Exception):
     """An error that is told in one sentence, without a traceback."""
@@ -37,3 +42,15 @@ class OutputError(MpmkitError):
     """Results could not be written: disk full, no permission, directory taken."""
 
     exit_status = 4
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C in the middle of a run; says where the results up to then are."""
+
+
+def reason(error: BaseException) -> str:
+    """What an error says, in one line; for one that was not written to be read, its name as well."""
+    if isinstance(error, MpmkitError):
+        return " ".join(str(error).split())
+    text = textwrap.shorten(str(error), LONGEST_REASON, placeholder=" …")
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -68,11 +68,17 @@ def bytes_per_particle(case: Case) -> int:
 
 def window_nodes(case: Case) -> float:
     """Nodes that are stored when a run begins: those around the bodies, and a quarter more."""
+    lower, upper = _extent(case)
+    return 1.25 * float(np.prod((upper - lower) / case.grid.cell_size + MARGIN))
+
+
+def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner, m, of the box around all bodies, as far as it is in the domain."""
     bounds = [body.shape.bounds(case.space_) for body in case.bodies]
     domain_lower, domain_upper = kept_box(case)
     lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
     upper = np.minimum(np.max([high for _, high in bounds], axis=0), domain_upper)
-    return 1.25 * float(np.prod((upper - lower) / case.grid.cell_size + MARGIN))
+    return lower, upper
 
 
 def _kept_rows(case: Case) -> float:
@@ -96,12 +102,27 @@ def require_memory(case: Case) -> None:
     particles = expected_particles(case)
     needed, there = expected_bytes(case, particles), psutil.virtual_memory().total
     if needed > there:
+        if window_nodes(case) * NODE * DOUBLE > needed / 2:
+            raise CaseError(_too_wide(case, needed, there))
         fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
             f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)}; use larger cells, "
             f"fewer particles a cell, {fewer_rows}or a symmetry plane"
         )
+
+
+def _too_wide(case: Case, needed: float, there: float) -> str:
+    """The sentence where not the particles take the memory but the nodes around and between them."""
+    lower, upper = _extent(case)
+    spans = " × ".join(f"{span:.4g}" for span in upper - lower)
+    between = ", the gap between them included," if len(case.bodies) > 1 else ""
+    closer = ", or bring the bodies closer together" if between else ""
+    return (
+        f"grid.cell_size is {case.grid.cell_size:g} m, and the window over all bodies{between} spans "
+        f"{spans} m: its {window_nodes(case):.3g} nodes need {_gib(needed)} of memory, but this machine has "
+        f"{_gib(there)}; use larger cells{closer}"
+    )
 
 
 def _gib(size: float) -> str:

@@ -7,8 +7,9 @@ import time as clock
 from statistics import median
 from typing import Any
 
+from .blame import blaming_plugins
 from .case.model import Case
-from .errors import GuardStop
+from .errors import CaseError, GuardStop
 from .memory import expected_bytes, require_memory
 from .solver.simulation import Simulation
 from .threads import use_threads
@@ -29,14 +30,23 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
 
     Raises:
         CaseError: the case cannot be run.
+        GuardStop: it diverges at once, or a plug-in raised an exception.
     """
     require_memory(case)
-    simulation = Simulation(case)
-    particles = len(simulation.particles)
+    with blaming_plugins(case):
+        return _plan(Simulation(case), threads)
+
+
+def _plan(simulation: Simulation, threads: int | None) -> dict[str, Any]:
+    case, particles = simulation.case, len(simulation.particles)
     use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings = simulation.warnings()
+    if not math.isfinite(case.until / step):
+        raise CaseError(
+            f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
+        )
     steps = math.ceil(case.until / step)
     seconds_per_step, stopped = _trial(simulation)
     return {

@@ -11,13 +11,14 @@ import numpy as np
 
 from . import __version__
 from .case.model import Case
+from .contracts import Plugin
 from .recorder import FRAMES, ROWS
 from .registry import installed
 from .solver.scene import particles_along_axes
 
 
-def plugins_used(case: Case) -> list[dict[str, str]]:
-    """Every plug-in that the case uses, with the distribution and version that it came from."""
+def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
+    """Kind and plug-in, for every plug-in that the case uses."""
     scheme = case.scheme
     used = [(kind, getattr(scheme, kind)) for kind in ("shape", "order", "velocity", "volumetric")]
     for body in case.bodies:
@@ -25,8 +26,13 @@ def plugins_used(case: Case) -> list[dict[str, str]]:
         used.append(("law", law))
         if law.uses_equation_of_state:
             used.append(("equation_of_state", body.material.equation_of_state))
+    return used
+
+
+def plugins_used(case: Case) -> list[dict[str, str]]:
+    """Every plug-in that the case uses, with the distribution and version that it came from."""
     found: list[dict[str, str]] = []
-    for kind, plugin in used:
+    for kind, plugin in plugins_of(case):
         entry = {"kind": kind, "name": plugin.name}
         origin = installed().plugins[kind].get(plugin.name)
         if origin is not None:
@@ -44,6 +50,8 @@ def resolved(case: Case) -> dict[str, Any]:
     data["output"]["frame_interval"] = case.output.frame_interval or case.until / FRAMES
     for body, entry in zip(case.bodies, data["bodies"], strict=True):
         entry["particles_per_cell"] = list(particles_along_axes(body, case.space_.dim))
+        if entry["shape"].get("base", ...) is None:
+            entry["shape"]["base"] = [0.0] * case.space_.dim
         entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
     return data
 

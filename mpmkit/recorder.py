@@ -58,11 +58,23 @@ class Recorder:
             self._add_frame()
 
     def finish(self) -> None:
-        """Add the state in which the run ended, however it ended, and write the history."""
+        """Add the state in which the run ended, and write the history."""
+        self.add_last_row()
+        self.add_last_frame()
+        self.write()
+
+    def add_last_row(self) -> None:
+        """Add a row of the present step, unless there is one."""
         if self._last_row != self.simulation.steps:
             self._add_row()
+
+    def add_last_frame(self) -> None:
+        """Add a frame of the present step, unless there is one."""
         if self.frames is not None and self._last_frame != self.simulation.steps:
             self._add_frame()
+
+    def write(self) -> None:
+        """Write the history."""
         if self.directory is not None:
             self.history.write(self.directory.history)
 

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .blame import blaming_plugins
 from .case.model import Case
-from .errors import GuardStop
+from .conclusion import conclude, salvage
+from .errors import GuardStop, Interrupted, OutputError, reason
 from .memory import require_memory
-from .output import RunDirectory, open_log, summarise, write_json
-from .provenance import attributes, plugins_used, resolved
+from .output import RunDirectory, open_log, write_json
+from .provenance import attributes, resolved
 from .recorder import Recorder
 from .solver.simulation import Simulation
 from .threads import use_threads
@@ -63,19 +65,28 @@ def run(
 
     Raises:
         CaseError: the case cannot be run as it stands.
-        GuardStop: the run diverged; everything up to then is in the run directory.
-        OutputError: the run directory cannot be written.
+        GuardStop: the run diverged, or a plug-in raised an exception; everything up to then is in the run
+            directory.
+        OutputError: the run directory cannot be written, or another run is writing it.
     """
     require_memory(case)
-    simulation = Simulation(case)
+    with blaming_plugins(case):
+        simulation = Simulation(case)
+    threads = use_threads(threads, len(simulation.particles))
     if out is None:
-        return _execute(simulation, None, threads, listen).history.dataset()
+        recorder = Recorder(simulation, attributes(case, threads), None)
+        _execute(recorder, threads, listen)
+        return recorder.history.dataset()
     directory = RunDirectory(Path(out), overwrite)
-    directory.claim()
-    with open_log(directory.log):
-        write_json(directory.case, resolved(case))
+    with directory.claimed(), open_log(directory.log):
         try:
-            recorder = _execute(simulation, directory, threads, listen)
+            write_json(directory.case, resolved(case))
+            recorder = Recorder(simulation, attributes(case, threads), directory)
+        except OutputError as error:
+            LOGGER.error("%s", error)
+            raise
+        try:
+            _execute(recorder, threads, listen)
         except GuardStop:
             _report(case, directory)
             raise
@@ -84,37 +95,48 @@ def run(
 
 
 def _report(case: Case, directory: RunDirectory) -> None:
-    if case.output.report:
+    """Draw the pictures. They can be drawn again from the directory: none is worth the outcome of a run."""
+    if not case.output.report:
+        return
+    try:
         from .report import write_report
 
         write_report(directory.path)
+    except Exception as error:
+        LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
 
 
-def _execute(
-    simulation: Simulation, directory: RunDirectory | None, threads: int | None, listen: Listener | None
-) -> Recorder:
-    case, particles = simulation.case, len(simulation.particles)
-    threads = use_threads(threads, particles)
-    recorder = Recorder(simulation, attributes(case, threads), directory)
+def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
+    simulation, directory = recorder.simulation, recorder.directory
+    case = simulation.case
     share = f"{case.scheme.time_step.fraction:.3g} of the {simulation.limited_by} limit"
     LOGGER.info(
         "%s: %d particles, step %.4g s (%s), threads: %d",
-        case.name, particles, simulation.time_step, share, threads,
+        case.name, len(simulation.particles), simulation.time_step, share, threads,
     )  # fmt: skip
     for sentence in simulation.warnings():
         LOGGER.warning("%s", sentence)
     start = clock.monotonic()
     try:
-        _advance(simulation, recorder, listen)
+        with blaming_plugins(case, lambda: (simulation.steps, simulation.time)):
+            _advance(simulation, recorder, listen)
+        conclude(recorder, "finished", clock.monotonic() - start)
     except GuardStop as stop:
-        LOGGER.error("%s", stop)
-        _conclude(recorder, stop.guard, clock.monotonic() - start)
+        LOGGER.error("%s", stop, exc_info=stop.__cause__)
+        salvage(recorder, stop.guard, clock.monotonic() - start)
         raise
     except KeyboardInterrupt:
-        _conclude(recorder, "interrupted", clock.monotonic() - start)
+        salvage(recorder, "interrupted", clock.monotonic() - start)
+        kept = "" if directory is None else f"; the results up to then are in '{directory.path}'"
+        raise Interrupted(f"interrupted at t = {simulation.time:.6g} s{kept}") from None
+    except OutputError as error:
+        LOGGER.error("%s", error)
+        salvage(recorder, "output-error", clock.monotonic() - start)
         raise
-    _conclude(recorder, "finished", clock.monotonic() - start)
-    return recorder
+    except Exception as error:
+        LOGGER.error("%s", reason(error), exc_info=True)
+        salvage(recorder, "error", clock.monotonic() - start)
+        raise
 
 
 def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None) -> None:
@@ -140,22 +162,3 @@ def _progress(simulation: Simulation, elapsed: float) -> Progress:
     done = simulation.time / until
     speed = simulation.particle_steps / elapsed
     return Progress(simulation.time, until, simulation.steps, speed, elapsed * (1 - done) / done)
-
-
-def _conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
-    """Write everything that is known at the end of a run, however it ended."""
-    simulation, directory = recorder.simulation, recorder.directory
-    recorder.history.attributes["stopped_because"] = ended
-    recorder.finish()
-    LOGGER.info("%s after %d steps, t = %.6g s", ended, simulation.steps, simulation.time)
-    if directory is not None:
-        summary = summarise(
-            recorder.history.dataset(),
-            particles=len(simulation.particles),
-            particle_steps=simulation.particle_steps,
-            steps=simulation.steps,
-            wall_time=wall_time,
-            stopped_because=ended,
-            plugins=plugins_used(simulation.case),
-        )
-        write_json(directory.summary, summary)

@@ -11,6 +11,7 @@ from mpmkit.case import case_schema, load_case, parse_case
 from mpmkit.case.allowed import Place
 from mpmkit.errors import CaseError
 from mpmkit.memory import require_memory
+from mpmkit.provenance import resolved
 from mpmkit.registry import installed
 from mpmkit.solver.scene import make_particles
 
@@ -51,7 +52,9 @@ BAD = [
     ("untill", 1, "the case has an unknown key 'untill'; did you mean 'until'?"),
     ("bogus", 1, "unknown key 'bogus'; it may have name, description, space, until,"),
     ("grid.cellsize", 0.1, "grid has an unknown key 'cellsize'; did you mean 'cell_size'?"),
-    ("grid.faces.z_mni", "slip", "the faces of the space 'plane-strain' are x_min, x_max, z_min, z_max"),
+    ("grid.faces.z_mni", "slip", "are x_min, x_max, z_min, z_max; did you mean 'z_min'?"),
+    ("grid.faces.floor", "slip", "the faces of the space 'plane-strain' are x_min, x_max, z_min, z_max"),
+    ("grid.domain.Z", [0, 1], "has the axes x, z; did you mean 'z'?"),
     ("bodies.0.shap", {}, "bodies.0 has an unknown key 'shap'; did you mean 'shape'?"),
     (f"{SHAPE}.lowr", [0, 0], "bodies.0.shape has an unknown key 'lowr'; did you mean 'lower'?"),
     (f"{MATERIAL}.densty", 1, "bodies.0.material has an unknown key 'densty'; did you mean 'density'?"),
@@ -68,7 +71,11 @@ BAD = [
     ("line\nbreak", 1, "unknown key 'line break'"),
     # missing
     ("until", ABSENT, "until is missing; it must be a number above 0, in s"),
-    ("grid", ABSENT, "grid is missing; it must be an object with the keys 'cell_size', 'domain' and 'faces'"),
+    (
+        "grid",
+        ABSENT,
+        "it must be an object with the keys 'cell_size' and 'domain', and if need be the key 'faces'",
+    ),
     ("bodies", ABSENT, "bodies is missing; it must be a list of one or more objects"),
     (
         f"{SHAPE}.kind",
@@ -85,7 +92,11 @@ BAD = [
     (f"{MATERIAL}.density", None, "density is null; it must be a number above 0"),
     ("bodies", {}, "bodies is {}; it must be a list of one or more objects"),
     ("bodies", [], "bodies is []; it must be a list of one or more objects"),
-    ("bodies.0", 3, "bodies.0 is 3; it must be an object with the keys 'shape', 'material',"),
+    (
+        "bodies.0",
+        3,
+        "bodies.0 is 3; it must be an object with the keys 'shape' and 'material', and if need be",
+    ),
     (SHAPE, "box", "bodies.0.shape is \"box\"; it must be an object with a 'kind' that is"),
     (f"{SHAPE}.lower", [0.2, "a"], 'bodies.0.shape.lower.1 is "a"; it must be a number, in m'),
     (
@@ -107,7 +118,7 @@ BAD = [
     (
         "scheme.time_step",
         1e-5,
-        "scheme.time_step is 1e-05; it must be an object with the keys 'fraction' and 'ignore'",
+        "scheme.time_step is 1e-05; it must be an object that may have the keys 'fraction' and 'ignore'",
     ),
     ("scheme.time_step.ignore", "viscous", 'it must be a list of "acoustic", "viscous" or "advective"'),
     ("output.report", "yes", 'output.report is "yes"; it must be true or false'),
@@ -129,6 +140,11 @@ BAD = [
     ("grid.domain.x", [1, 0], "grid.domain.x is [1, 0]; the lower end must be below the upper one"),
     ("grid.domain.x", [-1.7e308, 1.7e308], "grid.domain.x has inf cells"),
     ("grid.domain.y", [0, 1], "grid.domain has an axis 'y'; the space 'plane-strain' has the axes x, z"),
+    (
+        "grid.faces.z_min",
+        "friction",
+        'or "symmetry"; did you mean {"kind": "friction", "coefficient": …}?',
+    ),
     ("grid.faces.z_min", "slipp", '"open" or "symmetry"; did you mean "slip"?'),
     (
         "grid.faces.z_min",
@@ -197,6 +213,12 @@ BAD = [
 ]
 
 
+RADIAL = {
+    "space": "axisymmetric",
+    "grid": {"cell_size": 0.1, "domain": {"r": [0, 1], "z": [0, 1]}, "faces": {"z_min": "slip"}},
+}
+
+
 def changed(path, value):
     data = copy.deepcopy(GOOD)
     here = data
@@ -229,6 +251,23 @@ def test_a_bad_value_is_told_of(path, value, expected):
         make_particles(parse_case(changed(path, value)))
 
     assert expected in sentence(prepare)
+
+
+@pytest.mark.parametrize("faces", [{"r_max": "periodic"}, {"r_min": "periodic", "r_max": "periodic"}])
+def test_the_radial_axis_has_no_period(faces):
+    data = GOOD | RADIAL | {"grid": RADIAL["grid"] | {"faces": faces}}
+    assert f'grid.faces.{next(iter(faces))} is "periodic"; the radial axis has no' in sentence(
+        parse_case, data
+    )
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+def test_what_python_can_say_and_json_cannot_is_told_with_its_place(value):
+    expected = f"{value} is not a number that a case can have"
+    assert f"until: {expected}" in sentence(parse_case, changed("until", value))
+    assert f"bodies.0.shape.lower.1: {expected}" in sentence(
+        parse_case, changed(f"{SHAPE}.lower", [0, value])
+    )
 
 
 ANYTHING = (None, True, -7, "nonsense", [], {}, [None], {"name": None}, {"kind": {}}, [[]])
@@ -287,6 +326,27 @@ def test_too_much_memory_is_refused_before_anything_is_made():
     assert "fewer rows" in sentence(require_memory, parse_case(kept))
 
 
+def test_bodies_far_apart_are_told_what_takes_the_memory():
+    far = changed("grid.domain", {"x": [-25_000, 25_000], "z": [0, 25_000]})
+    other = copy.deepcopy(far["bodies"][0])
+    other["shape"] |= {"lower": [20_000, 20_000], "upper": [20_000.4, 20_000.4]}
+    far["bodies"].append(other)
+    text = sentence(require_memory, parse_case(far))
+    assert "the window over all bodies, the gap between them included, spans 2e+04 × 2e+04 m: its" in text
+    assert "or bring the bodies closer together" in text
+
+
+def test_a_resolved_case_says_where_a_body_stands_and_can_be_run():
+    body = {
+        "shape": {"kind": "cylinder", "radius": 0.2, "height": 0.4},
+        "material": GOOD["bodies"][0]["material"],
+    }
+    grid = {"cell_size": 0.1, "domain": {"x": [-1, 1], "z": [0, 1]}}
+    case = resolved(parse_case(GOOD | {"bodies": [body], "grid": grid}))
+    assert case["bodies"][0]["shape"]["base"] == [0.0, 0.0]
+    assert resolved(parse_case(case)) == case
+
+
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
@@ -294,9 +354,11 @@ def test_too_much_memory_is_refused_before_anything_is_made():
         ("[]", "a case must be a JSON object, not []"),
         ("{,}", "is not valid JSON: Expecting property name enclosed in double quotes at line 1, column 2"),
         ('{"until": 1, "until": 2}', "the key 'until' stands twice in one object"),
-        ('{"a": {"b": 1, "b": 1}}', "the key 'b' stands twice"),
-        ('{"until": NaN}', "NaN is not a number that a case can have"),
-        ('{"until": -Infinity}', "-Infinity is not a number"),
+        ('{"a": {"b": 1, "b": 1}}', ": a: the key 'b' stands twice"),
+        ('{"a": [{"b": 1}, {"b": {"c": 1, "c": 1}}], "d": NaN}', ": a.1.b: the key 'c' stands twice"),
+        ('{"until": NaN}', ": until: NaN is not a number that a case can have"),
+        ('{"a": [1, [2, NaN]]}', ": a.1.1: NaN is not a number"),
+        ('{"until": -Infinity}', ": until: -Infinity is not a number"),
         ('{"until": 1e999}', "1e999 is not a number"),
         ('{"until": 1' + "0" * 5000 + "}", "has 5001 digits"),
         ("[" * 100_000, "nested too deeply"),

@@ -12,6 +12,7 @@ import xarray
 
 import mpmkit
 from mpmkit.cli import main
+from mpmkit.cli.duration import duration
 
 CASE = {
     "space": "plane-strain",
@@ -95,6 +96,7 @@ def test_a_run_is_overwritten_only_if_asked(case, capsys):
         (["tiny.json", "--set", "scheme.order=uls"], 'did you mean "usl"?'),
         (["tiny.json", "--set", "grid.cell_size=1e-6"], "GiB of memory, but this machine has"),
         (["tiny.json", "--set", "bodies.0.shape.upper=[0.21,0.01]"], "holds no particle"),
+        (["tiny.json", "--set", "bodies.0.material.sound_speed=1e160"], "sound_speed is 1e+160"),
         (["tiny.json", "--set", "name=../up"], 'name is "../up"'),
         (["tiny.json", "--untill", "1"], "see mpmkit run --help"),
         (["missing.json"], "No such file"),
@@ -164,12 +166,75 @@ def test_an_interrupted_run_keeps_its_history(case, tmp_path, sent):
     finally:
         process.kill()
     assert process.returncode == 130, said
-    assert said.splitlines()[-1] == "mpmkit: interrupted"
+    last = said.splitlines()[-1]
+    assert last.startswith("mpmkit: interrupted at t = ")
+    assert last.endswith(" s; the results up to then are in 'runs/tiny'")
     assert "Traceback" not in said
     assert json.loads((directory / "summary.json").read_text())["stopped_because"] == "interrupted"
     with xarray.open_dataset(directory / "history.nc") as history:
         assert len(history.time) >= 1
         assert history.attrs["stopped_because"] == "interrupted"
+
+
+def test_an_interrupt_while_the_libraries_load_is_one_sentence(capsys, monkeypatch):
+    import builtins
+
+    load = builtins.__import__
+
+    def interrupt(name, *arguments, **options):
+        if name == "commands":
+            raise KeyboardInterrupt
+        return load(name, *arguments, **options)
+
+    monkeypatch.setattr(builtins, "__import__", interrupt)
+    assert status("plugins") == 130
+    assert one_line(capsys) == "mpmkit: interrupted"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
+@pytest.mark.parametrize(
+    "arguments",
+    [["run", "tiny.json", "--until", "1e-3"], ["plan", "tiny.json"], ["schema"], ["plugins"], ["--help"]],
+)
+def test_an_output_that_is_full_is_status_4(case, arguments):
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "mpmkit", *arguments]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 4
+    last = done.stderr.splitlines()[-1]
+    assert last == "mpmkit: cannot write to the standard output: No space left on device"
+    assert "Traceback" not in done.stderr
+
+
+def test_a_reader_that_has_gone_gets_no_traceback(case):
+    command = f"{sys.executable} -m mpmkit schema | true"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_a_run_without_end_can_be_planned(case, capsys):
+    assert status("plan", case, "--until", "1e300") == 0
+    out = capsys.readouterr().out
+    assert "years on this machine" in out
+    assert max(map(len, out.splitlines())) < 100
+    assert status("plan", case, "--until", "1.7e308") == 2
+    assert "more than can be counted" in one_line(capsys)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (0.2, "0:00"),
+        (65, "1:05"),
+        (7265, "2:01:05"),
+        (90_000, "1 day, 1:00:00"),
+        (1e6, "11 days, 13:46:40"),
+        (1e10, "317 years"),
+        (float("inf"), "for ever"),
+    ],
+)
+def test_durations(seconds, said):
+    assert duration(seconds) == said
 
 
 def test_plan(case, capsys):

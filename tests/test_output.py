@@ -300,7 +300,7 @@ class TestSummary:
 
     def summary(self, history: History, **changes) -> dict:
         given = {"particles": 10, "particle_steps": 200, "steps": 20, "wall_time": 4.0}
-        given |= {"stopped_because": "end", "plugins": {}}
+        given |= {"stopped_because": "finished", "plugins": {}}
         return summarise(history.dataset(), **{**given, **changes})
 
     def test_keys_and_values(self):
@@ -312,6 +312,16 @@ class TestSummary:
         assert summary["simulated_time"] == pytest.approx(0.2)
         assert summary["final_height"] is None  # not a column of this history
         assert summary["particle_steps_per_second"] == 50.0
+
+    def test_what_a_guard_refused_is_not_summarised(self):
+        """A particle thrown out in the last row makes no T500 and no final shape."""
+        thrown_out = self.summary(small_history(), stopped_because="particle-outside")
+        assert thrown_out["t500"] is thrown_out["final_spread"] is None
+        assert thrown_out["simulated_time"] == pytest.approx(0.2)
+        later = self.summary(small_history((0.2, 0.3, 0.6, 90.0)), stopped_because="particle-outside")
+        assert later["t500"] == pytest.approx(0.1 + 0.1 * 2 / 3)
+        assert later["final_spread"] is None
+        assert self.summary(small_history(), stopped_because="interrupted")["final_spread"] == 0.6
 
     def test_of_a_run_that_never_started(self):
         summary = self.summary(small_history(()), wall_time=0.0)

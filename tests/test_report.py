@@ -9,7 +9,8 @@ from matplotlib.image import imread
 from mpmkit.errors import CaseError
 from mpmkit.output import FrameWriter, History, RunDirectory, Variable, read_frames, summarise, write_json
 from mpmkit.report import write_report
-from mpmkit.report.outline import chosen_frames, floor_of
+from mpmkit.report.domain import domain_of
+from mpmkit.report.outline import chosen_frames
 from mpmkit.report.run_results import read_results
 from mpmkit.report.section import plane_of, section_of
 from mpmkit.spaces import SPACES
@@ -98,9 +99,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
             frames.write(time, step, fields, position)
     history.write(run.history)
     numbers = {"particle_steps": 1000, "particles": len(start), "steps": len(times), "wall_time": 2.0}
-    write_json(
-        run.summary, summarise(history.dataset(), **numbers, stopped_because="end of the run", plugins={})
-    )
+    write_json(run.summary, summarise(history.dataset(), **numbers, stopped_because="finished", plugins={}))
     return path
 
 
@@ -157,16 +156,16 @@ def test_snapshots_are_the_nearest_frames_and_the_end(axisymmetric):
 
 def test_half_a_body_is_drawn_whole(axisymmetric):
     results = read_results(axisymmetric)
-    section = section_of(results.frames[-1][1], results, plane_of(results))
+    section = section_of(results.frames[-1][1], results, plane_of(results), domain_of(results))
     assert section.lower[0] == pytest.approx(-section.upper[0])
     assert len(section.centre) == 2 * results.summary["particles"]
-    assert floor_of(results) == 0.0
+    assert domain_of(results).floor == 0.0
 
 
 def test_a_section_in_3d_holds_the_particles_within_a_cell_of_its_plane(tmp_path):
     run = fabricate(tmp_path / "run", "3d", spacing=0.02)
     results = read_results(run)
-    section = section_of(read_frames(run / "frames")[0][1], results, plane_of(results))
+    section = section_of(read_frames(run / "frames")[0][1], results, plane_of(results), domain_of(results))
     points = cone(SPACES["3d"], 0.02)
     assert plane_of(results) == 0.0
     assert len(section.centre) == 2 * (points[:, 1] <= 0.04).sum()

@@ -7,6 +7,7 @@ Takes about a minute. The second floor is no choice of mpmkit; it is put in here
 
 import numpy as np
 from common import DOCS, figure, plot_reference
+from floors import hold_floor
 
 import mpmkit
 
@@ -24,25 +25,8 @@ def spread(simulation: mpmkit.Simulation) -> list[float]:
     return found
 
 
-def hold_floor(simulation: mpmkit.Simulation) -> None:
-    """Set the vertical velocity of the nodes on the floor and behind it to zero, whenever it is computed."""
-    operations, window = simulation.operations, simulation.operations.window
-
-    def held(original):
-        def operation(*args, **kwargs):
-            original(*args, **kwargs)
-            floor = window.walls[1, 0]
-            nodes = window.nodes.reshape(*window.shape[:2], -1)
-            nodes[:, max(floor - 1, 0) : floor + 1, [2, 4]] = 0.0
-
-        return operation
-
-    operations.map_to_grid = held(operations.map_to_grid)
-    operations.solve_momentum = held(operations.solve_momentum)
-
-
 def main() -> None:
-    path = DOCS.parent / "cases/slump.json"
+    path = DOCS.parent / "cases/slump_as_published.json"
     mirror = mpmkit.Simulation(mpmkit.load_case(path, COARSE))
     zero = mpmkit.Simulation(mpmkit.load_case(path, [*COARSE, "grid.faces.z_min=open"]))
     hold_floor(zero)

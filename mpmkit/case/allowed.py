@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 from collections.abc import Iterable
 from copy import copy
@@ -67,9 +68,28 @@ class Place:
             such = f"such a '{key}'" if values == choices else f"a '{key}' that is {one_of(values)}"
             parts.append(f"an object with {such}")
         elif any("properties" in node for node in self.nodes):
-            keys = [f"'{key}'" for key in self.keys()]
-            parts.append(f"an object with the key{'s' * (len(keys) > 1)} {_listed(keys, 'and')}")
+            parts.append(self._object())
         return ", or ".join(parts) or "something else"
+
+    def written_out(self, value: Any) -> str | None:
+        """The object of which ``value`` is a constant, with all that must stand in it; None without one."""
+        for node in self.nodes:
+            properties = node.get("properties", {})
+            named = [key for key, rule in properties.items() if "const" in rule and rule["const"] == value]
+            if named:
+                rest = [key for key in node.get("required", []) if key not in named]
+                entries = [f'"{named[0]}": {json.dumps(value)}', *(f'"{key}": …' for key in rest)]
+                return f"{{{', '.join(entries)}}}"
+        return None
+
+    def _object(self) -> str:
+        """The keys of an object, those that must stand there first."""
+        objects = [node for node in self._meant() if "properties" in node]
+        needed = [key for key in self.keys() if all(key in node.get("required", []) for node in objects)]
+        others = [key for key in self.keys() if key not in needed]
+        if not needed:
+            return f"an object that may have {_keys(others)}"
+        return f"an object with {_keys(needed)}" + (f", and if need be {_keys(others)}" if others else "")
 
     def _describe(self, node: Node) -> str:
         kind = node.get("type", "")
@@ -148,6 +168,19 @@ def shown(value: Any) -> str:
 def one_of(values: list[Any]) -> str:
     """``"a", "b" or "c"``, as they would stand in the file."""
     return _listed([json.dumps(value, ensure_ascii=False) for value in values], "or")
+
+
+def nearest(word: Any, allowed: Iterable[Any]) -> str | None:
+    """Of the names that are allowed, the one that a misspelt word may have meant."""
+    if not isinstance(word, str):
+        return None
+    by_case = {str(name).casefold(): name for name in allowed}
+    close = difflib.get_close_matches(word.casefold()[:LONGEST], by_case, n=1)
+    return by_case[close[0]] if close else None
+
+
+def _keys(names: list[str]) -> str:
+    return f"the key{'s' * (len(names) > 1)} {_listed([repr(name) for name in names], 'and')}"
 
 
 def _listed(words: list[str], last: str) -> str:

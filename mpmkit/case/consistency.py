@@ -5,11 +5,13 @@ Each is broken with one sentence that names the field, the value, and what is al
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .allowed import shown
+from .allowed import nearest, shown
 
 if TYPE_CHECKING:
     from .model import Case, Material
@@ -69,6 +71,7 @@ def _check_domain(case: Case) -> None:
         if axis not in axes:
             raise ValueError(
                 f"grid.domain has an axis '{axis}'; the space '{case.space}' has the axes {', '.join(axes)}"
+                f"{_meant(axis, axes)}"
             )
     for axis in axes:
         if axis not in domain:
@@ -103,6 +106,16 @@ def _check_faces(case: Case) -> None:
         if name not in names:
             raise ValueError(
                 f"grid.faces has '{name}'; the faces of the space '{case.space}' are {', '.join(names)}"
+                f"{_meant(name, names)}"
+            )
+    if case.space_.radial:
+        for name in ("r_min", "r_max"):
+            if faces.get(name) == "periodic":
+                raise ValueError(f'grid.faces.{name} is "periodic"; the radial axis has no period')
+        if faces.get("r_min", "symmetry") != "symmetry":
+            raise ValueError(
+                f"grid.faces.r_min is {shown(faces['r_min'])}; at the axis of symmetry it must be "
+                '"symmetry" or left out'
             )
     for axis in case.space_.axes:
         pair = [faces.get(f"{axis}_{side}") for side in ("min", "max")]
@@ -110,14 +123,11 @@ def _check_faces(case: Case) -> None:
             raise ValueError(
                 f"grid.faces: {axis}_min and {axis}_max must both be 'periodic' if one of them is"
             )
-    if case.space_.radial:
-        if "periodic" in (faces.get("r_min"), faces.get("r_max")):
-            raise ValueError("grid.faces: the radial axis cannot be 'periodic'")
-        if faces.get("r_min", "symmetry") != "symmetry":
-            raise ValueError(
-                f"grid.faces.r_min is {shown(faces['r_min'])}; at the axis of symmetry it must be "
-                '"symmetry" or left out'
-            )
+
+
+def _meant(word: str, allowed: Iterable[str]) -> str:
+    near = nearest(word, allowed)
+    return "" if near is None else f"; did you mean '{near}'?"
 
 
 def _check_particles_per_cell(field: str, value: int | list[int] | None, case: Case) -> None:
@@ -147,6 +157,10 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
         raise ValueError(
             f"{field} is a factor of √(2 g h), but gravity is {case.gravity}; give the speed itself, in m/s"
         )
+    speed = case.sound_speed(material)
+    if speed is not None and not math.isfinite(material.density * speed * speed):
+        given = f"{material.sound_speed:g}" if isinstance(material.sound_speed, float) else f"{speed:g} m/s"
+        raise ValueError(f"{field} is {given}, so that density times its square is too large for a number")
 
 
 def _check_time_step(case: Case) -> None:

@@ -16,7 +16,7 @@ from .allowed import shown
 from .messages import explain
 from .model import Case, case_model
 from .overrides import apply_overrides
-from .strict_json import NESTED, decode
+from .strict_json import NESTED, decode, require_finite
 
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
@@ -45,6 +45,7 @@ def parse_case(
         raise CaseError(f"{source}: a case must be a JSON object, not {shown(data)}")
     model = case_model(registry)
     try:
+        require_finite(data)  # of Python's, that is: a file has been through this
         data = apply_overrides(data, overrides)
         data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
         return model.model_validate_json(json.dumps(data, allow_nan=False))

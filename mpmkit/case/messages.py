@@ -7,7 +7,6 @@ gets out.
 
 from __future__ import annotations
 
-import difflib
 import json
 from functools import lru_cache
 from typing import Any, NamedTuple, get_args
@@ -17,7 +16,7 @@ from pydantic_core import core_schema
 
 from ..contracts import KINDS
 from ..registry import Registry
-from .allowed import LONGEST, Place, one_of, shown
+from .allowed import LONGEST, Place, nearest, one_of, shown
 from .strict_json import NESTED
 
 PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
@@ -43,7 +42,7 @@ def explain(error: ValidationError, data: Any, model: type[BaseModel], registry:
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
     # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
     true_names = {
-        (*c.path[:-1], _nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown
+        (*c.path[:-1], nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown
     }
     others = [
         c for c in complaints if c not in unknown and not (c.kind == "missing" and c.path in true_names)
@@ -101,8 +100,10 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry)
         allowed = one_of(choices)
     else:
         allowed = one_of(choices) if choices and isinstance(value, str) else place.describe()
-    near = _nearest(value, choices)
+    near, written_out = nearest(value, choices), place.written_out(value) if isinstance(value, str) else None
     hint = f"; did you mean {json.dumps(near)}?" if near is not None and not missing else ""
+    if written_out is not None and not missing:
+        hint = f"; did you mean {written_out}?"
     state = "is missing" if missing else f"is {shown(value)}"
     return f"{_field(path)} {state}; it must be {allowed}{hint}{_unusable(path, value, registry)}"
 
@@ -112,17 +113,9 @@ def _field(path: Path) -> str:
 
 
 def _unknown_key(path: Path, allowed: list[str]) -> str:
-    near = _nearest(path[-1], allowed)
+    near = nearest(path[-1], allowed)
     hint = f"it may have {', '.join(allowed)}" if near is None else f"did you mean '{near}'?"
     return f"{_field(path[:-1])} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
-
-
-def _nearest(word: Any, allowed: list[Any]) -> str | None:
-    if not isinstance(word, str):
-        return None
-    by_case = {str(name).casefold(): name for name in allowed}
-    close = difflib.get_close_matches(word.casefold()[:LONGEST], by_case, n=1)
-    return by_case[close[0]] if close else None
 
 
 def _unusable(path: Path, name: Any, registry: Registry) -> str:

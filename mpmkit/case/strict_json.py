@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 NESTED = "its objects and lists are nested too deeply"
 MOST_DIGITS = 400
 """Longest number: more digits than any double has; Python's own limit would be told of in Python's words."""
+LONGEST_PATH = 200
+"""Characters of a place that are shown."""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Stands where the text says something that a case cannot, until it is known where that is."""
+
+    why: str
 
 
 def decode(text: str) -> Any:
@@ -16,37 +27,67 @@ def decode(text: str) -> Any:
 
     Raises:
         json.JSONDecodeError: it is not JSON.
-        ValueError: it is, and says something that a case cannot; the text is the end of a sentence.
+        ValueError: it is, and says something that a case cannot; the text names the place and is the end of
+            a sentence.
     """
     try:
-        return json.loads(
+        data = json.loads(
             text, object_pairs_hook=_unique, parse_constant=_refuse, parse_float=_finite, parse_int=_integer
         )
     except RecursionError:
         raise ValueError(NESTED) from None
+    require_finite(data)
+    return data
 
 
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    seen: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in seen:
-            raise ValueError(f"the key '{key}' stands twice in one object; keep one of them")
-        seen[key] = value
-    return seen
+def require_finite(data: Any) -> None:
+    """Refuse, with the place, the first number that is not finite, and whatever ``decode`` refused.
+
+    Raises:
+        ValueError: see ``decode``.
+    """
+    for path, value in _leaves(data):
+        if isinstance(value, float) and not math.isfinite(value):
+            value = _refuse(str(value))
+        if isinstance(value, Refused):
+            place = ".".join(str(key) for key in path)[:LONGEST_PATH]
+            raise ValueError(f"{place}: {value.why}" if place else value.why)
+
+
+def _leaves(data: Any) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+    """Places and values of all that is neither an object nor a list, in the order of the text."""
+    pending: list[tuple[tuple[str | int, ...], Any]] = [((), data)]
+    while pending:  # no recursion: how deep a text may be nested is not for this to say
+        path, value = pending.pop()
+        if isinstance(value, dict):
+            pending += [((*path, key), item) for key, item in reversed(value.items())]
+        elif isinstance(value, list | tuple):
+            pending += [((*path, index), item) for index, item in reversed(list(enumerate(value)))]
+        else:
+            yield path, value
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> Any:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        return Refused(f"the key '{twice}' stands twice in one object; keep one of them")
+    return found
 
 
 def _refuse(number: str) -> Any:
-    raise ValueError(f"{number} is not a number that a case can have; every number must be finite")
+    return Refused(f"{number} is not a number that a case can have; every number must be finite")
 
 
-def _finite(digits: str) -> float:
+def _finite(digits: str) -> Any:
     value = float(digits)
     return value if math.isfinite(value) else _refuse(digits[:20])
 
 
-def _integer(digits: str) -> int:
+def _integer(digits: str) -> Any:
     if len(digits) > MOST_DIGITS:
-        raise ValueError(
+        return Refused(
             f"{digits[:20]}… has {len(digits)} digits; a number of a case has at most {MOST_DIGITS}"
         )
     return int(digits)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import logging
 import time as clock
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+from .duration import duration
 
 if TYPE_CHECKING:
     from .. import runner
@@ -34,8 +37,12 @@ console = Console(stderr=True)
 
 
 def say(line: str, style: str | None = None) -> None:
-    """A line beside the progress bar, never wrapped or coloured by its content."""
-    console.print(line, style=style, soft_wrap=True, highlight=False, markup=False)
+    """A line beside the progress bar, never wrapped or coloured by its content.
+
+    What nobody can read any more, on a full disk or a closed pipe, is not worth a run.
+    """
+    with suppress(OSError):
+        console.print(line, style=style, soft_wrap=True, highlight=False, markup=False)
 
 
 class Display(logging.Handler):
@@ -77,25 +84,19 @@ class Display(logging.Handler):
             say(f"warning: {record.getMessage()}", style="yellow")
         if not self._started:
             self._started = True
-            say("loading kernels; the first run compiles them, which takes about half a minute")
+            say("loading kernels; those that are new are compiled first, which takes about half a minute")
             self._bar.start()
 
     def __call__(self, progress: runner.Progress) -> None:
         line = (
             f"t = {progress.time:.4g} of {progress.until:g} s · "
             f"{progress.particle_steps_per_second / 1e6:.2f} M particle-steps/s · "
-            f"{_duration(progress.seconds_left)} left"
+            f"{duration(progress.seconds_left)} left"
         )
         self._bar.update(self._task, completed=progress.time / progress.until, line=line)
         if not console.is_terminal and clock.monotonic() - self._said > LINE_INTERVAL:
             self._said = clock.monotonic()
             say(line)
-
-
-def _duration(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
 def show_summary(directory: Path) -> None:

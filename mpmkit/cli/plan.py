@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from datetime import timedelta
 
 import click
 
 from . import options
+from .duration import duration
+
+MOST_COUNTED = 10**15
+"""From here on nobody reads the digits."""
 
 
 @click.command("plan")
@@ -37,9 +40,13 @@ def command(
         f"time step      {cost['time_step']:.4g} s, set by the {cost['limited_by']} limit",
         *(f"  {name:<12} {limit:.4g} s" for name, limit in cost["limits"].items() if limit is not None),
         *(f"sound speed    {speed:.4g} m/s" for speed in speeds),
-        f"steps          {cost['steps']:,}",
+        f"steps          {_counted(cost['steps'])}",
         f"memory         {max(1, round(cost['memory_bytes'] / 2**20)):,} MiB",
-        f"expected time  {timedelta(seconds=max(1, round(cost['expected_seconds'])))} on this machine",
+        f"expected time  {duration(max(1.0, cost['expected_seconds']))} on this machine",
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
     click.echo("\n".join(lines))
+
+
+def _counted(number: int) -> str:
+    return f"{number:,}" if number < MOST_COUNTED else f"{number:.3g}"

@@ -12,6 +12,8 @@ from .operations import Operations
 class UpdateOrder(Plugin):
     """When the stress is updated within a step."""
 
+    acoustic_fraction: ClassVar[float] = 1.0
+    """Largest part of the acoustic limit, dx/c, at which the order is stable."""
     viscous_fraction: ClassVar[float] = 1.0
     """Largest part of the viscous limit, 0.375 rho dx²/mu, at which the order is stable."""
 

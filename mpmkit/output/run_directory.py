@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from ..errors import CaseError
+from ..errors import CaseError, OutputError
 from .atomic import cannot_write
 from .frames import LIST_NAME
+from .lock import LOCK_NAME, Locked, locked
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
@@ -50,6 +52,28 @@ class RunDirectory:
     def log(self) -> Path:
         return self.path / "run.log"
 
+    @contextmanager
+    def claimed(self) -> Iterator[None]:
+        """Claim the directory, and keep every other run out of it inside the block.
+
+        Raises:
+            CaseError: where something is there that must not be overwritten.
+            OutputError: where another run is at work, or the directory cannot be made or cleared.
+        """
+        self._make()  # what is refused anyway is refused before a lock is put into it
+        with ExitStack() as held:
+            try:
+                held.enter_context(locked(self.path))
+            except Locked:
+                raise OutputError(
+                    f"cannot write '{self.path}': another run is writing there; "
+                    "wait for its end, or write elsewhere with --out DIR"
+                ) from None
+            except OSError as error:
+                raise cannot_write(self.path, error) from error
+            self.claim()
+            yield
+
     def claim(self) -> None:
         """Make the directory, or clear it of an earlier run.
 
@@ -57,13 +81,22 @@ class RunDirectory:
             CaseError: where something is there that must not be overwritten.
             OutputError: where the directory cannot be made or cleared.
         """
+        if self._make():
+            try:
+                self._clear()
+            except OSError as error:
+                raise cannot_write(self.path, error) from error
+
+    def _make(self) -> bool:
+        """Make the directory if it is not there; returns whether there is something to clear in it."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if any(self.path.iterdir()):
-                self._refuse_if_precious()
-                self._clear()
+            filled = any(path.name != LOCK_NAME for path in self.path.iterdir())
         except OSError as error:
             raise cannot_write(self.path, error) from error
+        if filled:
+            self._refuse_if_precious()
+        return filled
 
     def _refuse_if_precious(self) -> None:
         if not self.overwrite:

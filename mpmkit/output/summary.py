@@ -13,6 +13,20 @@ if TYPE_CHECKING:
 
 T500_DIAMETER = 0.5
 """Spread diameter, m, at which T500 is taken."""
+TRUSTED = ("finished", "interrupted", "output-error")
+"""Why a run may have ended without its last state being in doubt; any other reason is that of a guard."""
+
+
+def trusted_to_the_end(stopped_because: str | None) -> bool:
+    """Whether the last state of a run is one that the run arrived at, and not one that a guard refused."""
+    return stopped_because in TRUSTED
+
+
+def trusted_rows(history: xarray.Dataset, stopped_because: str | None) -> xarray.Dataset:
+    """The rows of a history that can be believed: after a guard's stop, all but the last."""
+    if trusted_to_the_end(stopped_because):
+        return history
+    return history.isel(time=slice(None, -1))
 
 
 def first_crossing(time: ArrayLike, values: ArrayLike, level: float) -> float | None:
@@ -42,6 +56,9 @@ def summarise(
 ) -> dict[str, Any]:
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
+    A run that a guard stopped never came to its final shape, and the row of its stop may be that of a
+    particle thrown out: it has no final lengths, and a T500 only from the rows before.
+
     Args:
         history: dataset of a ``History``.
         particles: number of particles at the end.
@@ -53,12 +70,14 @@ def summarise(
     """
     t500 = None
     if "spread_diameter" in history:
-        t500 = first_crossing(history["time"].values, history["spread_diameter"].values, T500_DIAMETER)
+        rows = trusted_rows(history, stopped_because)
+        t500 = first_crossing(rows["time"].values, rows["spread_diameter"].values, T500_DIAMETER)
+    arrived = trusted_to_the_end(stopped_because)
     return {
         "t500": t500,
-        "final_spread": _last(history, "spread_diameter"),
-        "final_slump": _last(history, "slump"),
-        "final_height": _last(history, "height"),
+        "final_spread": _last(history, "spread_diameter") if arrived else None,
+        "final_slump": _last(history, "slump") if arrived else None,
+        "final_height": _last(history, "height") if arrived else None,
         "simulated_time": _last(history, "time"),
         "particles": particles,
         "steps": steps,

@@ -28,7 +28,8 @@ def draw(results: RunResults) -> Figure | None:
         label, colour = CURVES[name]
         axes.plot(results.time, values, color=colour, label=label)
     axes.set_ylim(bottom=min(0, axes.get_ylim()[0]) if min(map(np.nanmin, curves.values())) < 0 else 0)
-    axes.legend()
+    # Outside: there is no corner that no curve of any case crosses.
+    figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 

@@ -10,13 +10,19 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
+from .domain import Domain, domain_of
+from .filling import triangles_between
+from .images import beyond_faces
 from .panels import Panels
 from .run_results import RunResults
 from .section import Section, plane_of, section_of
-from .style import BLACK, COLOUR_MAP, MILLIMETRES
+from .style import BLACK, COLOUR_MAP, GREY, MILLIMETRES
 
 DEFAULT_TIMES = (0.0, 0.1, 0.2, 0.5)
+FEWEST_DIGITS, MOST_DIGITS = 3, 12
+"""Decimals of a time; more than the fewest only where two panels would bear the same time."""
 
 
 @dataclass(frozen=True)
@@ -31,28 +37,31 @@ def draw(results: RunResults) -> Figure | None:
     """One panel for each snapshot time that the run reached, and one for its end; None without frames."""
     if not results.frames:
         return None
-    plane = plane_of(results)
-    snapshots = [Snapshot(time, section_of(path, results, plane)) for time, path in chosen_frames(results)]
-    lower = np.min([snapshot.section.lower for snapshot in snapshots], axis=0)
-    upper = np.max([snapshot.section.upper for snapshot in snapshots], axis=0)
-    floor = floor_of(results)
-    if floor is not None:
-        lower[1] = min(lower[1], floor)
-    margin = 0.04 * (upper - lower).max()
-    lower, upper = lower - margin, upper + margin
-
+    domain, plane = domain_of(results), plane_of(results)
+    snapshots = [
+        Snapshot(time, section_of(path, results, plane, domain)) for time, path in chosen_frames(results)
+    ]
+    shown = [snapshot.section for snapshot in snapshots if len(snapshot.section)]
+    if not shown:
+        return None
+    lower, upper = _limits(shown, domain)
     panels = Panels(len(snapshots), upper - lower)
-    colours = Normalize(0, max(snapshot.section.speed.max() for snapshot in snapshots) or 1.0)
+    colours, extend = _colours([snapshot.section for snapshot in snapshots], results.stopped_by_guard)
+    digits = _digits([snapshot.time for snapshot in snapshots])
     for axes, snapshot in zip(panels.axes, snapshots, strict=True):
-        body = _add_section(axes, snapshot.section, colours)
-        if floor is not None:
-            axes.axhline(floor * MILLIMETRES, color=BLACK, linewidth=1.5)
+        body = _add_section(axes, snapshot.section, colours, domain, results.case["grid"]["cell_size"])
+        if domain.floor is not None:
+            axes.axhline(domain.floor * MILLIMETRES, color=BLACK, linewidth=1.5)
         axes.set_xlim(lower[0] * MILLIMETRES, upper[0] * MILLIMETRES)
         axes.set_ylim(lower[1] * MILLIMETRES, upper[1] * MILLIMETRES)
-        axes.set_title(_label(results, snapshot.time), loc="left", fontsize=9.5, fontweight="normal")
+        axes.set_title(_label(results, snapshot.time, digits), loc="left", fontsize=9.5, fontweight="normal")
+        if not len(snapshot.section):
+            note = "nothing in this section"
+            axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", color=GREY)
     panels.label(f"{'r' if results.case['space'] == 'axisymmetric' else 'x'} (mm)", "z (mm)")
-    panels.colour_bar(body, "speed (m/s)")
-    panels.figure.suptitle(f"{results.title}: shape", fontweight="bold", fontsize=12)
+    panels.colour_bar(body, "speed (m/s)", extend)
+    where = "" if plane is None else f", section at y = {plane * MILLIMETRES:.4g} mm"
+    panels.title(f"{results.title}: shape{where}")
     return panels.figure
 
 
@@ -66,20 +75,40 @@ def chosen_frames(results: RunResults) -> list[tuple[float, Path]]:
     return [results.frames[index] for index in sorted(nearest | {len(times) - 1})]
 
 
-def floor_of(results: RunResults) -> float | None:
-    """Height of the floor, m; None where the lower face of the domain is no wall."""
-    grid = results.case["grid"]
-    face = grid.get("faces", {}).get("z_min", "open")
-    return None if face in ("open", "periodic") else grid["domain"]["z"][0]
+def _limits(sections: list[Section], domain: Domain) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of a panel, m: around the material, within the domain, down to a floor."""
+    lower = np.maximum(np.min([section.lower for section in sections], axis=0), domain.lower)
+    upper = np.minimum(np.max([section.upper for section in sections], axis=0), domain.upper)
+    if domain.floor is not None:
+        lower[1] = domain.floor
+    margin = 0.04 * (upper - lower).max()
+    return lower - margin, upper + margin
 
 
-def _add_section(axes: Axes, section: Section, colours: Normalize) -> PolyCollection:
+def _colours(sections: list[Section], stopped_by_guard: bool) -> tuple[Normalize, str]:
+    """The scale of the speeds, and at which ends a speed may lie beyond it.
+
+    What a guard stopped has speeds at its end that would leave one colour for all that was before.
+    """
+    fastest = [float(section.speed.max()) if len(section) else 0.0 for section in sections]
+    trusted = fastest[:-1] if stopped_by_guard and len(fastest) > 1 else fastest
+    top = max(trusted) or max(fastest) or 1.0
+    return Normalize(0, top), "max" if max(fastest) > top else "neither"
+
+
+def _add_section(
+    axes: Axes, section: Section, colours: Normalize, domain: Domain, cell_size: float
+) -> PolyCollection:
+    section = beyond_faces(section, domain, cell_size)
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rectangles = section.centre[:, None, :] + corners * section.half_size[:, None, :]
+    between = triangles_between(section, cell_size)
+    # A triangle is a quadrilateral that has one corner twice; the boxes lie on top.
+    triangles = section.centre[between[:, [0, 1, 2, 2]]]
     # A thin edge of its own colour closes the hairlines between neighbours.
     body = PolyCollection(
-        rectangles * MILLIMETRES,
-        array=section.speed,
+        [*(np.concatenate([triangles, rectangles]) * MILLIMETRES)],
+        array=np.concatenate([section.speed[between].mean(axis=1), section.speed]),
         norm=colours,
         cmap=COLOUR_MAP,
         linewidths=0.4,
@@ -87,10 +116,26 @@ def _add_section(axes: Axes, section: Section, colours: Normalize) -> PolyCollec
         zorder=2,
     )
     axes.add_collection(body)
+    # A box that reaches over a face stands for material in front of it.
+    width, height = (domain.upper - domain.lower) * MILLIMETRES
+    corner = (domain.lower[0] * MILLIMETRES, domain.lower[1] * MILLIMETRES)
+    body.set_clip_path(Rectangle(corner, width, height, transform=axes.transData))
+    body.set_in_layout(False)  # what is clipped needs no room beside the panel
     return body
 
 
-def _label(results: RunResults, time: float) -> str:
+def _digits(times: list[float]) -> int:
+    """Decimals that tell the times apart."""
+    for digits in range(FEWEST_DIGITS, MOST_DIGITS):
+        if len({f"{time:.{digits}f}" for time in times}) == len(times):
+            return digits
+    return MOST_DIGITS
+
+
+def _label(results: RunResults, time: float, digits: int) -> str:
+    when = f"t = {time:.{digits}f} s"
+    if results.stopped_by_guard and time == results.frames[-1][0]:
+        return f"{when}\nstopped by a guard"
     lengths = {"spread": results.at(time, "spread_diameter"), "height": results.at(time, "height")}
     known = [f"{word} {value * MILLIMETRES:.0f} mm" for word, value in lengths.items() if value is not None]
-    return f"t = {time:.3f} s\n{', '.join(known)}".rstrip()
+    return f"{when}\n{', '.join(known)}".rstrip()

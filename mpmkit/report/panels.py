@@ -8,26 +8,36 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import MaxNLocator
 
 WIDTH = 9.0
-"""Width of the page, inch; all lengths here are in inch."""
+"""Width of the page, inch, which narrow panels do not fill; all lengths here are in inch."""
 HEIGHT = 11.0
 """Largest height of the page."""
 BETWEEN, AROUND = 0.6, 0.9
 """Room for what is written at one panel, and at all of them."""
-COLUMNS = 3
+NARROWEST = 1.9
+"""Room across for what is written above a panel, however narrow it is."""
+COLUMNS, NARROW_COLUMNS = 3, 4
 """Most panels side by side, so that what is written above one keeps clear of the next."""
+PAD = 0.1
+"""Room above and below a panel and what is written at it."""
+BAR = 1.0
+"""Room for a colour bar at the side."""
 
 
 class Panels:
     """``count`` panels, each to show a width and a height ``extent`` (2,) in the same scale."""
 
     def __init__(self, count: int, extent: np.ndarray) -> None:
-        choices = range(1, min(count, COLUMNS) + 1)
+        most = NARROW_COLUMNS if extent[1] > 2 * extent[0] else COLUMNS
+        choices = range(1, min(count, most) + 1)
         self._columns = min(choices, key=lambda columns: _badness(count, columns, extent))
         rows = math.ceil(count / self._columns)
-        height = min(_page_height(count, self._columns, extent), HEIGHT)
-        self.figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        self.figure = Figure(
+            figsize=_page(count, self._columns, extent), layout=ConstrainedLayoutEngine(h_pad=PAD)
+        )
         grid = self.figure.subplots(rows, self._columns, sharex=True, sharey=True, squeeze=False)
         self.axes: list[Axes] = list(grid.flat[:count])
         self._empty: list[Axes] = list(grid.flat[count:])
@@ -36,31 +46,46 @@ class Panels:
         for axes in self._empty:
             axes.set_axis_off()
 
+    def title(self, text: str) -> None:
+        """Name the picture, at the left as on the other pictures of a report."""
+        self.figure.suptitle(text, x=0.01, ha="left", fontweight="bold", fontsize=12)
+
     def label(self, horizontal: str, vertical: str) -> None:
         """Name the axes along the lower and the left side of the grid."""
-        for axes in self.axes[
-            -self._columns :
-        ]:  # the lowest of each column, also where the last row is not full
+        lowest = self.axes[-self._columns :]  # of each column, also where the last row is not full
+        for axes in lowest:
             axes.tick_params(labelbottom=True)
             axes.set_xlabel(horizontal)
         for axes in self.axes[:: self._columns]:
             axes.set_ylabel(vertical)
 
-    def colour_bar(self, mappable: ScalarMappable, label: str) -> None:
+    def colour_bar(self, mappable: ScalarMappable, label: str, extend: str = "neither") -> None:
         """Put the colour bar into an empty place of the grid, or to the right of it."""
         if self._empty:
             place = self._empty[-1].inset_axes((0.1, 0.5, 0.8, 0.08))
-            self.figure.colorbar(mappable, cax=place, orientation="horizontal", label=label)
+            bar = self.figure.colorbar(
+                mappable, cax=place, orientation="horizontal", label=label, extend=extend
+            )
+            bar.locator = MaxNLocator(nbins=3)
+            bar.update_ticks()
         else:
-            self.figure.colorbar(mappable, ax=self.axes, label=label, shrink=0.8, aspect=30)
+            self.figure.colorbar(mappable, ax=self.axes, label=label, shrink=0.8, aspect=30, extend=extend)
 
 
-def _page_height(count: int, columns: int, extent: np.ndarray) -> float:
-    panel_width = WIDTH / columns - BETWEEN
-    return AROUND + math.ceil(count / columns) * (panel_width * extent[1] / extent[0] + BETWEEN)
+def _page(count: int, columns: int, extent: np.ndarray) -> tuple[float, float]:
+    """Width and height of the page that ``columns`` panels side by side ask for."""
+    rows, empty = math.ceil(count / columns), -count % columns
+    tallest = (HEIGHT - AROUND) / rows - BETWEEN
+    width = min(WIDTH / columns - BETWEEN, tallest * extent[0] / extent[1])
+    bar = 0.0 if empty else BAR
+    return (
+        columns * (max(width, NARROWEST) + BETWEEN) + bar,
+        AROUND + rows * (width * extent[1] / extent[0] + BETWEEN),
+    )
 
 
 def _badness(count: int, columns: int, extent: np.ndarray) -> float:
     """How far a page is from 4:3, with a price on each empty place but the one that the colour bar takes."""
     empty = -count % columns
-    return abs(math.log(WIDTH / _page_height(count, columns, extent) / (4 / 3))) + 0.5 * max(empty - 1, 0)
+    width, height = _page(count, columns, extent)
+    return abs(math.log(width / height / (4 / 3))) + 0.5 * max(empty - 1, 0)

@@ -13,6 +13,7 @@ import xarray
 
 from ..errors import CaseError
 from ..output import RunDirectory, read_frames
+from ..output.summary import trusted_rows, trusted_to_the_end
 
 
 @dataclass(frozen=True)
@@ -22,12 +23,18 @@ class RunResults:
     case: dict[str, Any]
     summary: dict[str, Any]
     history: xarray.Dataset
+    """Its rows but for the last of a run that a guard stopped: that one holds what the guard refused."""
     frames: Sequence[tuple[float, Path]]
     """Times, s, and files of the frames, in order of time."""
 
     @property
     def title(self) -> str:
         return str(self.case.get("name", "case"))
+
+    @property
+    def stopped_by_guard(self) -> bool:
+        """Whether the last state is one that must not be trusted."""
+        return not trusted_to_the_end(self.summary.get("stopped_because"))
 
     @property
     def time(self) -> np.ndarray:
@@ -39,12 +46,15 @@ class RunResults:
         if name not in self.history:
             return None
         values = self.history[name].values
-        return values if np.isfinite(values).sum() > 1 else None
+        finite = np.isfinite(values)
+        return np.where(finite, values, np.nan) if finite.sum() > 1 else None
 
     def at(self, time: float, name: str) -> float | None:
-        """A scalar of the history, interpolated at a time, s; None if it is absent."""
-        values = self.series(name)
-        return None if values is None else float(np.interp(time, self.time, values))
+        """A scalar of the history, interpolated at a time, s; None if it is absent or not known then."""
+        if name not in self.history or not len(self.time) or time > self.time[-1]:
+            return None
+        value = float(np.interp(time, self.time, self.history[name].values))
+        return value if np.isfinite(value) else None
 
 
 def read_results(path: Path) -> RunResults:
@@ -57,10 +67,11 @@ def read_results(path: Path) -> RunResults:
     try:
         with xarray.open_dataset(run.history, engine="netcdf4") as history:
             history.load()
+        summary = json.loads(run.summary.read_text(encoding="utf-8"))
         return RunResults(
             case=json.loads(run.case.read_text(encoding="utf-8")),
-            summary=json.loads(run.summary.read_text(encoding="utf-8")),
-            history=history,
+            summary=summary,
+            history=trusted_rows(history, summary.get("stopped_because")),
             frames=read_frames(run.frames),
         )
     except (OSError, json.JSONDecodeError) as error:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
 
 from ..output import read_frame
+from .domain import Domain, inside, symmetry_plane
 from .run_results import RunResults
+
+NEEDED = ("position", "half_size", "speed", "body")
+"""Fields of a frame that a picture is drawn from."""
 
 
 @dataclass(frozen=True)
@@ -21,52 +25,74 @@ class Section:
     """``(n, 2)``, m."""
     speed: np.ndarray
     """``(n,)``, m/s."""
+    body: np.ndarray
+    """``(n,)``, number of the body."""
+
+    def __len__(self) -> int:
+        return len(self.speed)
 
     @property
     def lower(self) -> np.ndarray:
+        """Lower corner of a section that is not empty."""
         return (self.centre - self.half_size).min(axis=0)
 
     @property
     def upper(self) -> np.ndarray:
+        """Upper corner of a section that is not empty."""
         return (self.centre + self.half_size).max(axis=0)
+
+    def with_image(self, of: np.ndarray, factor: np.ndarray, shift: np.ndarray) -> Section:
+        """This section and, before it, the image factor · x + shift of a part of it."""
+        image = Section(self.centre[of] * factor + shift, self.half_size[of], self.speed[of], self.body[of])
+        joined = {
+            f.name: np.concatenate([getattr(image, f.name), getattr(self, f.name)]) for f in fields(self)
+        }
+        return Section(**joined)
 
 
 def plane_of(results: RunResults) -> float | None:
-    """The y, m, of the section through a 3-D scene: its plane of symmetry, else its middle at the start."""
+    """The y, m, of the section through a 3-D scene; None for one that has no y.
+
+    It is the plane of symmetry, else the middle of the material at the start; where that cuts nothing, as
+    between two bodies, it is the plane through the nearest particles.
+    """
     if results.case["space"] != "3d":
         return None
-    symmetry = _symmetry_plane(results, "y")
-    if symmetry is not None:
-        return symmetry
-    frame = read_frame(results.frames[0][1])
-    return float(np.average(frame["position"][:, 1], weights=frame["half_size"].prod(axis=1)))
+    frame = _drawable(results.frames[0][1], results)
+    y = frame["position"][:, 1]
+    plane = symmetry_plane(results, "y")
+    if plane is None:
+        plane = float(np.average(y, weights=frame["half_size"].prod(axis=1))) if len(y) else 0.0
+    away = np.abs(y - plane)
+    if len(y) and away.min() > results.case["grid"]["cell_size"]:
+        return float(y[np.argmin(away)])
+    return plane
 
 
-def section_of(path: Path, results: RunResults, plane: float | None) -> Section:
+def section_of(path: Path, results: RunResults, plane: float | None, domain: Domain) -> Section:
     """The section through a frame along y = ``plane``, m, or all of it where that is None.
 
-    Half a body, cut at its axis or at a plane of symmetry, is drawn whole.
+    Half a body, cut at its axis or at a plane of symmetry, is drawn whole. Particles that are not finite, or
+    have left the domain, are not drawn: a guard has stopped their run. Nothing may be left.
     """
-    frame = read_frame(path)
-    position, half_size, speed = frame["position"], frame["half_size"], frame["speed"]
+    frame = _drawable(path, results)
     if plane is not None:
-        distance = np.abs(position[:, 1] - plane)
+        distance = np.abs(frame["position"][:, 1] - plane)
         # Drawn from the farthest to the nearest, so that what the plane cuts lies on top.
         order = np.argsort(-distance)
         drawn = order[distance[order] <= results.case["grid"]["cell_size"]]
-        position, half_size, speed = position[drawn], half_size[drawn], speed[drawn]
-    centre, half_size = position[:, [0, 2]], half_size[:, [0, 2]]
-    mirror = 0.0 if results.case["space"] == "axisymmetric" else _symmetry_plane(results, "x")
-    if mirror is not None:
-        reflected = centre * [-1, 1] + [2 * mirror, 0]
-        centre, half_size = np.concatenate([reflected, centre]), np.tile(half_size, (2, 1))
-        speed = np.tile(speed, 2)
-    return Section(centre, half_size, speed)
+        frame = {name: field[drawn] for name, field in frame.items()}
+    centre, half_size = frame["position"][:, [0, 2]], frame["half_size"][:, [0, 2]]
+    section = Section(centre, half_size, frame["speed"], frame["body"])
+    everything = np.ones(len(section), dtype=bool)
+    if domain.mirror is not None:
+        section = section.with_image(everything, np.array([-1, 1]), np.array([2 * domain.mirror, 0]))
+    return section
 
 
-def _symmetry_plane(results: RunResults, axis: str) -> float | None:
-    grid = results.case["grid"]
-    for side, bound in zip(("min", "max"), grid["domain"][axis], strict=True):
-        if grid.get("faces", {}).get(f"{axis}_{side}") == "symmetry":
-            return bound
-    return None
+def _drawable(path: Path, results: RunResults) -> dict[str, np.ndarray]:
+    """The fields of a frame that a picture needs, of the particles that can be drawn."""
+    frame = {name: field for name, field in read_frame(path).items() if name in NEEDED}
+    kept = inside(results, frame["position"]) & np.isfinite(frame["speed"])
+    kept &= np.isfinite(frame["half_size"]).all(axis=1)
+    return {name: field[kept] for name, field in frame.items()}

@@ -15,8 +15,9 @@ from .particles import Particles
 
 @dataclass(frozen=True)
 class Measures:
-    """Measures a scene. Lengths include the particle domains and what a symmetry plane has cut off; masses,
-    momenta and energies are of the part that is simulated.
+    """Measures a scene. Lengths include the particle domains and what a symmetry plane has cut off, and leave
+    out particles that are not in the domain, which a guard is about to stop the run for; masses, momenta and
+    energies are of the part that is simulated.
     """
 
     case: Case
@@ -36,8 +37,9 @@ class Measures:
 
     def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
         """All scalar measures by the names of the history's variables."""
-        height = self._height(p, slice(None))
-        axis_height = self._height(p, self._near_axis(p))
+        inside = self._inside(p)
+        height = self._height(p, inside)
+        axis_height = self._height(p, inside & self._near_axis(p))
         squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
         strain = compressive = 0.0
         for group in p.groups:
@@ -48,9 +50,10 @@ class Measures:
             )
             if group.law.uses_equation_of_state:
                 compressive += float(np.sum(volume * group.compressive_energy(p.volume_ratio[part])))
-        gravity = self.case.gravity_vector
+        # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
+        gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
         return {
-            "spread_diameter": self._spread(p),
+            "spread_diameter": self._spread(p, inside),
             "height": height,
             "axis_height": axis_height,
             "slump": self.initial_height - axis_height,
@@ -64,14 +67,14 @@ class Measures:
             "fractured_fraction": self._fractured(p),
         }
 
-    def _spread(self, p: Particles) -> float:
+    def _spread(self, p: Particles, of: np.ndarray) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
         diameters = []
         for a in range(self.grid.dim - 1):
-            if self.grid.periodic[a]:
+            if self.grid.periodic[a] or not of.any():
                 continue
-            high = float((p.position[:, a] + p.box[:, a]).max())
-            low = float((p.position[:, a] - p.box[:, a]).min())
+            high = float((p.position[:, a] + p.box[:, a])[of].max())
+            low = float((p.position[:, a] - p.box[:, a])[of].min())
             plane = _symmetry_plane(self.case, self.grid, a)
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
@@ -82,10 +85,16 @@ class Measures:
         apart = longest > self.grid.cell_size / 2 * (1 + 1e-9)
         return float(np.sum(p.volume[apart]) / np.sum(p.volume))
 
-    def _height(self, p: Particles, of: slice | np.ndarray) -> float:
+    def _height(self, p: Particles, of: np.ndarray) -> float:
         """Top of the material above the grid's lower face, m; not a number where there is none."""
         tops = (p.position[:, -1] + p.box[:, -1])[of]
         return float(tops.max()) if len(tops) else np.nan
+
+    def _inside(self, p: Particles) -> np.ndarray:
+        """Particles in the domain; one whose position is not finite is not."""
+        within = (p.position >= 0) & (p.position <= self.grid.extent)
+        # Along a periodic axis a step may lead out of the domain, and the next one wraps it.
+        return np.all((within | self.grid.periodic) & np.isfinite(p.position), axis=1)
 
     def _near_axis(self, p: Particles) -> np.ndarray:
         """Particles within one cell of the axis of the body."""

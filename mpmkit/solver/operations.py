@@ -14,6 +14,15 @@ from .layout import Layout
 from .particles import Particles
 from .time_step import limits
 
+LEAST_WIDTH = 0.25
+"""Width, in cells, below which a domain that follows the strain does not get, unless it began with less.
+
+At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
+e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
+thin, such a node gets stiff. USL, which takes its stress from that node, bears √(2 w) of dx/c and 2 w of the
+viscous limit: at a quarter of a cell, 0.7 and 0.5.
+"""
+
 
 class SceneOperations:
     """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
@@ -31,6 +40,7 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
         self.mean_speed = 0.0
+        self._least_half_size = min(LEAST_WIDTH * grid.cell_size / 2, float(particles.half_size.min()))
         self._in_space = "2d" if dim == 2 else "3d"
         self._scatter = getattr(scatter, f"scatter_{self._in_space}")
         self._advance = getattr(gather, f"advance_{self._in_space}")
@@ -136,7 +146,7 @@ class SceneOperations:
         p = self.particles
         tensors.trace(p.velocity_gradient, self._rate)
         tensors.stretch_volume(self._treated(self._rate), dt, p.volume_ratio)
-        self._relax_volume(dt)
+        self.relax_volume(dt)
         np.multiply(p.volume_ratio, p.initial_volume, out=p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
@@ -157,7 +167,7 @@ class SceneOperations:
         p, rule = self.particles, self.scheme.shape.particle_domain
         domains.follow_strain(p.velocity_gradient, dt, p.box)
         if rule == "strain":
-            np.copyto(p.half_size, p.box)
+            np.maximum(p.box, self._least_half_size, out=p.half_size)
         elif rule == "stretch":
             domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
         elif rule == "volume":
@@ -174,7 +184,7 @@ class SceneOperations:
                     treated[group.part] = field[group.part]
         return treated
 
-    def _relax_volume(self, dt: float) -> None:
+    def relax_volume(self, dt: float) -> None:
         """J ← J + (1 - exp(-rate Δt)) (A J - J), with A the average over the grid by initial volume.
 
         A is symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any

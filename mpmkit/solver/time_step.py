@@ -50,7 +50,7 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
 def borne_by(scheme: Scheme) -> dict[str, float]:
     """Part of each limit, by name, at which the schemes are still stable."""
     return {
-        "acoustic": scheme.velocity.acoustic_fraction,
+        "acoustic": min(scheme.order.acoustic_fraction, scheme.velocity.acoustic_fraction),
         "viscous": scheme.order.viscous_fraction,
         "advective": 1.0,
     }

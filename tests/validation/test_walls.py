@@ -152,7 +152,7 @@ def test_layer_hangs_on_a_stick_floor(validate, shape):
 
 @pytest.mark.parametrize("kind", ["stick", "slip", rub(0.5)], ids=str)
 def test_nodes_of_a_wall_obey_it(kind):
-    """As the momentum equation leaves them: MUSL would map anew, with contact as it was decided before."""
+    """As the momentum equation leaves them; MUSL would map anew, with contact as it was decided before."""
     faces, order = {"z_min": kind}, "usl"
     simulation = scene([2, 0], [6, 4], [[0, 12], [0, 8]], faces, (2.0, -G), (1.0, -0.5), SOFT, order=order)
     for _ in range(50):

@@ -1,0 +1,61 @@
+"""Whose code raised an exception: what a plug-in raises is told in one sentence that names it."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .case.model import Case
+from .contracts import Plugin
+from .errors import GuardStop, MpmkitError, reason
+from .provenance import plugins_of
+from .registry import installed
+
+GUARD = "plug-in-error"
+NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
+"""Modules of the framework that run on behalf of the plug-in that called them."""
+
+
+@contextmanager
+def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: (0, 0.0)) -> Iterator[None]:
+    """Stop a run inside the block by a guard where a plug-in of the case raises an exception.
+
+    Args:
+        case: names the plug-ins.
+        when: gives the step and the time, s, that the run has come to.
+
+    Raises:
+        GuardStop: says which plug-in raised what, and where; the exception itself is its cause.
+    """
+    try:
+        yield
+    except MpmkitError:
+        raise
+    except Exception as error:
+        culprit = _culprit(error, plugins_of(case))
+        if culprit is None:  # a fault of the framework: it is not to be mistaken for a stranger's
+            raise
+        (step, time), (plugin, where) = when(), culprit
+        what = f"the plug-in {plugin} raised {reason(error)} ({where})"
+        raise GuardStop(GUARD, f"stopped at step {step}, t = {time:.6g} s: {what}", step=step) from error
+
+
+def _culprit(error: Exception, plugins: list[tuple[str, Plugin]]) -> tuple[str, str] | None:
+    """The plug-in whose code was nearest to where the exception was raised, and the place in it."""
+    for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
+        module = str(frame.f_globals.get("__name__"))
+        owner = type(frame.f_locals.get("self"))
+        for kind, plugin in plugins:
+            if owner is type(plugin) or module == type(plugin).__module__:
+                return _described(kind, plugin), f"{Path(frame.f_code.co_filename).name}, line {line}"
+        if module.startswith("mpmkit.") and not module.startswith(NEUTRAL):
+            return None
+    return None
+
+
+def _described(kind: str, plugin: Plugin) -> str:
+    origin = installed().plugins[kind].get(plugin.name)
+    of = f", of {origin.distribution}" if origin is not None and origin.plugin is type(plugin) else ""
+    return f"'{plugin.name}' ({kind.replace('_', ' ')}{of})"

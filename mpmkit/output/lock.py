@@ -1,0 +1,63 @@
+"""A lock on a directory: who holds it is alone there, and the system takes it from a process that dies."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows, where a file that is open cannot be replaced by another process anyway
+    fcntl = None  # type: ignore[assignment]
+
+LOCK_NAME = ".lock"
+"""File that is locked. It is removed in the end; where a killed process left one, nobody holds it."""
+
+
+class Locked(Exception):
+    """Another process, or another run of this one, holds the lock."""
+
+
+@contextmanager
+def locked(directory: Path) -> Iterator[None]:
+    """Hold the lock of a directory inside the block.
+
+    Raises:
+        Locked: at once, where it is held already.
+        OSError: where the file cannot be made.
+    """
+    path = Path(directory) / LOCK_NAME
+    file = _hold(path)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            path.unlink()  # before the lock is given up, so that no one else's file is removed
+        os.close(file)
+
+
+def _hold(path: Path) -> int:
+    while True:
+        file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            _lock(file)
+            # Between the opening and the lock, the holder before may have removed the file.
+            if path.exists() and os.path.samestat(os.fstat(file), path.stat()):
+                return file
+        except BaseException:
+            os.close(file)
+            raise
+        os.close(file)
+
+
+def _lock(file: int) -> None:
+    if fcntl is None:
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError) as error:
+        raise Locked from error
+    except OSError:
+        pass  # a file system without locks: better to run unguarded than not at all
