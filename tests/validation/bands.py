@@ -21,17 +21,18 @@ class Band:
     """Significant digits in which an obtained number is worth reading."""
 
     def used(self, obtained: float) -> float:
-        """Part of the band that is used up: it holds up to 1, and never for what is not a number."""
-        if math.isnan(obtained):
+        """How close to the edge of the band it is: 1 on the edge, 0 far inside, infinite outside.
+
+        It ranks runs that share a line of the report. Between two ends it is the part of the band used up;
+        with one end it falls with the distance from that, 1/2 at once the limit's own size.
+        """
+        if not self.holds(obtained):
             return math.inf
         if math.isfinite(self.low) and math.isfinite(self.high):
             half = (self.high - self.low) / 2
-            off = abs(obtained - (self.low + self.high) / 2)
-            return off / half if half > 0 else (0.0 if off == 0 else math.inf)
-        if self.low <= obtained <= self.high:
-            limit, part = (self.high, obtained) if math.isinf(self.low) else (obtained, self.low)
-            return min(max(part / limit, 0.0), 1.0) if limit > 0 else 0.0
-        return math.inf
+            return abs(obtained - (self.low + self.high) / 2) / half if half > 0 else 0.0
+        limit = self.high if math.isinf(self.low) else self.low
+        return 1 / (1 + abs(obtained - limit) / (abs(limit) or 1.0))
 
     def holds(self, obtained: float) -> bool:
         return bool(self.low <= obtained <= self.high)

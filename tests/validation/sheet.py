@@ -57,7 +57,7 @@ class Row:
     band: str
     holds: bool
     used: float | None = None
-    """Part of the band used up, by which rows of the same name are compared."""
+    """How close to the edge of the band it is, by which rows of the same name are ranked."""
 
 
 @dataclass
