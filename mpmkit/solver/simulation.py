@@ -71,7 +71,7 @@ class Simulation:
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
             if self.case.scheme.splitting and split(
-                self.particles, self.grid.cell_size, self.case.space_.radial
+                self.particles, self.grid.extent, self.grid.cell_size, self.case.space_.radial
             ):
                 self.operations.allocate()
             self.choose_time_step()

@@ -11,7 +11,7 @@ SPLIT_WITH = 0.8
 then grow rarely, and in large pieces."""
 
 
-def split(particles: Particles, cell_size: float, radial: bool) -> bool:
+def split(particles: Particles, extent: np.ndarray, cell_size: float, radial: bool) -> bool:
     """Halve every box that is longer than a cell along an axis; True if there was one.
 
     A box longer than a cell leaves cells without a particle, where the grid has no stiffness, and the
@@ -21,6 +21,7 @@ def split(particles: Particles, cell_size: float, radial: bool) -> bool:
 
     Args:
         particles: changed in place.
+        extent: lengths of the domain, m; the halves stay in it.
         cell_size: m.
         radial: whether axis 0 is the radius of an axisymmetric scene.
     """
@@ -29,28 +30,31 @@ def split(particles: Particles, cell_size: float, radial: bool) -> bool:
         longest = cell_size / 2 * (1 + 1e-9)
         if particles.box[:, axis].max() <= longest:
             continue
-        _halve(particles, particles.box[:, axis] > SPLIT_WITH * longest, axis, radial and axis == 0)
+        which = particles.box[:, axis] > SPLIT_WITH * longest
+        _halve(particles, which, axis, extent[axis], radial and axis == 0)
         changed = True
     return changed
 
 
-def _halve(p: Particles, which: np.ndarray, axis: int, ring: bool) -> None:
+def _halve(p: Particles, which: np.ndarray, axis: int, length: float, ring: bool) -> None:
     count = len(p)
     twice = np.repeat(np.arange(count), 1 + which)
     p.take(twice)
     inner = np.flatnonzero(np.diff(twice, append=-1) == 0)
     outer = inner + 1
-    offset = p.box[inner, axis] / 2
+    position = p.position[inner, axis]
+    to_face = np.minimum(
+        position, length - position
+    )  # a box does not reach beyond a face, nor across the axis
+    offset = np.minimum(p.box[inner, axis], to_face) / 2
     share = np.full(len(inner), 0.5)
     if ring:
-        radius = p.position[inner, 0]
-        offset = np.minimum(offset, radius / 2)  # a box does not reach across the axis
-        share = (radius - offset) / (2 * radius)
+        share = (position - offset) / (2 * position)
     for half, part, shift in ((inner, share, -offset), (outer, 1 - share, offset)):
         for extensive in (p.mass, p.initial_volume, p.volume):
             extensive[half] *= part
-        for length in (p.initial_half_size, p.half_size, p.box):
-            length[half, axis] /= 2
+        for size in (p.initial_half_size, p.half_size, p.box):
+            size[half, axis] /= 2
         p.position[half, axis] += shift
         if p.affine.shape[1]:  # about the centroid of the two, so that they have the parent's momentum
             from_centroid = shift - (1 - 2 * share) * offset

@@ -1,50 +1,181 @@
-"""The slump test: the spaces against each other, and against an independent finite-element solution."""
+"""The slump test: against an independent finite-element solution, and the spaces against each other.
+
+The reference is an incompressible solution of the stated equations on a free-slip floor. Nothing in mpmkit is
+fitted to it.
+"""
+
+from __future__ import annotations
 
 import csv
+from functools import cache
 from pathlib import Path
 
 import numba
 import numpy as np
 import pytest
+from bands import below, close_to
 
 import mpmkit
 
+pytestmark = pytest.mark.section(3)
 ROOT = Path(__file__).parents[2]
 REFERENCE = Path(__file__).parent / "reference" / "slump_free_slip_herschel_bulkley.csv"
-COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}']
+STEP = 0.02
 
 
-def spread(case: mpmkit.Case, times: list[float]) -> np.ndarray:
-    """Spread diameter, m, at some times, s."""
-    numba.set_num_threads(1)
-    simulation = mpmkit.Simulation(case)
-    found = []
-    for time in times:
-        while simulation.time < time * (1 - 1e-12):
-            simulation.advance(time - simulation.time)
-        found.append(simulation.measures(simulation.particles)["spread_diameter"])
-    return np.array(found)
+def cells(millimetres: float) -> list[str]:
+    """Another cell size, with a domain that is a whole number of them."""
+    height = 0.3 + millimetres / 1000
+    return [f"grid.cell_size={millimetres / 1000}", f'grid.domain={{"r": [0, 0.36], "z": [0, {height:g}]}}']
 
 
-def reference(times: list[float]) -> np.ndarray:
-    """Spread diameter of the independent incompressible solution, m."""
+class Slump:
+    """Histories of a run, sampled every 20 ms."""
+
+    def __init__(self, case: mpmkit.Case, until: float) -> None:
+        numba.set_num_threads(1)
+        simulation = mpmkit.Simulation(case)
+        self.time = np.round(np.arange(0, until + STEP / 2, STEP), 2)
+        rows = []
+        for t in self.time:
+            while simulation.time < t * (1 - 1e-12):
+                simulation.advance(t - simulation.time)
+            rows.append(simulation.measures(simulation.particles))
+        self.spread, self.height, self.axis_height, self.energy = (
+            np.array([row[name] for row in rows])
+            for name in ("spread_diameter", "height", "axis_height", "kinetic_energy")
+        )
+
+    @property
+    def t500(self) -> float:
+        return float(np.interp(0.5, self.spread, self.time))
+
+    def at(self, times) -> np.ndarray:
+        return np.interp(times, self.time, self.spread)
+
+
+@cache
+def reference() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, s, spread diameter and height on the axis, m, of the independent solution."""
     with REFERENCE.open() as lines:
         rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    columns = [[float(row[name]) for row in rows] for name in ("time_s", "spread_diameter_m")]
-    return np.interp(times, *columns)
+    time, spread, height = (
+        np.array([float(row[name]) for row in rows])
+        for name in ("time_s", "spread_diameter_m", "axis_height_m")
+    )
+    return time, spread, height
 
 
-def test_quarter_model_agrees_with_axisymmetric():
-    """Two spaces, two sets of kernels, one body: within 3 % at 10 mm while it falls."""
-    times = [0.05, 0.1, 0.15, 0.2]
-    softer = "bodies.0.material.sound_speed.factor=15"  # the same in both, for fewer steps
-    round_body = mpmkit.load_case(ROOT / "cases" / "slump.json", [*COARSE, softer])
-    quarter = mpmkit.load_case(ROOT / "cases" / "slump_quarter.json", [softer])
-    assert spread(quarter, times) == pytest.approx(spread(round_body, times), rel=0.03)
+def compare(validate, name: str, slump: Slump, curve: float, t500: float, final: float) -> None:
+    """The rows of section 3; the bands of D(t) and T500 are relative, that of the final spread in m."""
+    time, spread, axis = reference()
+    off = np.abs(slump.spread / np.interp(slump.time, time, spread) - 1).max()
+    validate(f"{name}: D(t), largest departure from the reference", off, below(curve, "0"))
+    validate(f"{name}: T500", slump.t500, close_to(0.607, rel=t500), unit="s")
+    validate(f"{name}: final spread", slump.spread[-1], close_to(0.56, abs=final), unit="m")
+    validate(f"{name}: largest height at rest", slump.height[-1], close_to(0.033, rel=0.05), unit="m")
+    validate(
+        f"{name}: height on the axis at rest", slump.axis_height[-1], close_to(0.0285, rel=0.05), unit="m"
+    )
+    late = slump.time >= 2.0
+    validate(
+        f"{name}: largest kinetic energy from 2 s on", slump.energy[late].max(), below(1e-4, "0"), unit="J"
+    )
+    if slump.time[-1] > 2.5:
+        from_2_s = slump.spread[late]
+        rate = (from_2_s[-1] / from_2_s[0] - 1) / (slump.time[-1] - 2.0)
+        validate(f"{name}: growth of the spread from 2 s on", rate, below(0.01, "0"), unit="/s")
+    for quantity, obtained, exact in (
+        ("spread", slump.spread, spread),
+        ("axis_height", slump.axis_height, axis),
+    ):
+        label = {"spread": "spread diameter (mm)", "axis_height": "height on the axis (mm)"}[quantity]
+        figure = validate.figure(f"slump_{quantity}", f"Slump: {label[:-5]}", x="time (s)", y=label)
+        figure.reference("incompressible finite elements", time, 1e3 * exact)
+        figure.line(name, slump.time, 1e3 * obtained)
 
 
-def test_coarse_slump_follows_the_reference_while_it_flows():
-    """The paper's settings at 10 mm stay within 4 % of the incompressible solution for half a second."""
-    times = [0.1, 0.2, 0.3, 0.4, 0.5]
-    case = mpmkit.load_case(ROOT / "cases" / "slump.json", COARSE)
-    assert spread(case, times) == pytest.approx(reference(times), rel=0.04)
+def test_slump_at_10_mm(validate):
+    """900 particles at the start, within the figures that are asked of 5 mm."""
+    slump = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=2.0)
+    compare(validate, "Slump, 10 mm", slump, curve=0.015, t500=0.04, final=0.01)
+
+
+@pytest.mark.slow
+def test_slump_at_5_mm(validate):
+    """The main job."""
+    slump = Slump(mpmkit.load_case(ROOT / "cases/slump.json"), until=4.0)
+    compare(validate, "Slump, 5 mm", slump, curve=0.015, t500=0.04, final=0.01)
+
+
+def test_quarter_model_agrees_with_axisymmetric(validate):
+    """Two spaces, two sets of kernels, one body: 10 mm, while it falls."""
+    round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=0.2)
+    quarter = Slump(mpmkit.load_case(ROOT / "cases/slump_quarter.json"), until=0.2)
+    off = np.abs(quarter.spread / round_body.spread - 1).max()
+    validate("Quarter model over axisymmetric, 10 mm, to 0.2 s: D(t) off", off, below(0.03, "0"))
+
+
+@pytest.mark.slow
+def test_quarter_model_agrees_with_axisymmetric_to_its_rest(validate):
+    """Particles split along two axes there, and are five times as many in the end."""
+    round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=1.4)
+    quarter = Slump(mpmkit.load_case(ROOT / "cases/slump_quarter.json"), until=1.4)
+    off = np.abs(quarter.spread / round_body.spread - 1).max()
+    validate("Quarter model over axisymmetric, 10 mm, to 1.4 s: D(t) off", off, below(0.03, "0"))
+    time, spread, _ = reference()
+    off = np.abs(quarter.spread / np.interp(quarter.time, time, spread) - 1).max()
+    validate("Quarter model, 10 mm: D(t), largest departure from the reference", off, below(0.04, "0"))
+    validate("Quarter model, 10 mm: T500", quarter.t500, close_to(0.607, rel=0.1), unit="s")
+
+
+@pytest.mark.parametrize("order", ["usf", "musl"])
+def test_update_orders_agree(validate, order):
+    times = [0.1, 0.3, 0.5]
+    usl, other = (
+        Slump(mpmkit.load_case(ROOT / "cases/slump.json", [*cells(10), f"scheme.order={name}"]), until=0.5)
+        for name in ("usl", order)
+    )
+    off = np.abs(other.at(times) / usl.at(times) - 1).max()
+    validate(f"Slump, 10 mm, {order.upper()} over USL to 0.5 s: D(t) off", off, below(0.01, "0"))
+
+
+def test_own_pressure_locks_on_a_stick_floor(validate):
+    """What the averaging is for; the more incompressible, the less by own pressure moves at all."""
+    stick = [*cells(20), "grid.faces.z_min=stick", "bodies.0.material.sound_speed.factor=50"]
+    averaged, own = (
+        Slump(mpmkit.load_case(ROOT / "cases/slump.json", [*stick, f"scheme.volumetric={name}"]), until=0.5)
+        for name in ("nodal-average", "own")
+    )
+    grown = (own.spread[-1] - 0.2) / (averaged.spread[-1] - 0.2)
+    validate(
+        "Stick floor, 20 mm, c = 50 √(2 g h), 0.5 s: growth of the spread, own over averaged",
+        grown,
+        below(0.5, "locks"),
+    )
+
+
+def test_the_settings_of_the_paper_follow_the_reference_while_it_flows(validate):
+    """On a floor that is a mirror; see docs/findings.md for the floor that locks."""
+    slump = Slump(mpmkit.load_case(ROOT / "cases/slump_as_published.json", cells(10)), until=0.5)
+    time, spread, _ = reference()
+    off = np.abs(slump.spread / np.interp(slump.time, time, spread) - 1).max()
+    validate("Settings of the paper, 10 mm, to 0.5 s: D(t) off", off, below(0.04, "0"))
+
+
+@pytest.mark.slow
+def test_the_settings_of_the_paper_do_not_rest(validate):
+    """The regularised law creeps below its yield stress: reported for what it is, 5 mm."""
+    slump = Slump(mpmkit.load_case(ROOT / "cases/slump_as_published.json"), until=4.0)
+    time, spread, _ = reference()
+    figure = validate.figure("slump_spread", "Slump: spread diameter", x="time (s)", y="spread diameter (mm)")
+    figure.reference("incompressible finite elements", time, 1e3 * spread)
+    figure.line("settings of the paper, 5 mm", slump.time, 1e3 * slump.spread)
+    for t in (0.1, 0.2, 0.5, 1.0):
+        exact = float(np.interp(t, time, spread))
+        validate(
+            f"Settings of the paper, 5 mm: D at {t:g} s", slump.at(t), close_to(exact, rel=0.04), unit="m"
+        )
+    rate = (slump.at(4.0) / slump.at(2.0) - 1) / 2
+    assert rate > 0.01  # it does not pass the criterion of rest
+    assert slump.energy[-1] > 1e-4
