@@ -8,8 +8,11 @@ from .errors import reason
 from .output import summarise, write_json
 from .provenance import plugins_used
 from .recorder import Recorder
+from .solver.simulation import Simulation
 
 LOGGER = logging.getLogger("mpmkit")
+FRACTURED = 0.05
+"""Part of the volume drawn apart that is worth a warning."""
 
 
 def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -21,6 +24,7 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     recorder.history.attributes["stopped_because"] = ended
     recorder.finish()
     _summarise(recorder, ended, wall_time)
+    _warn_of_fracture(recorder.simulation)
 
 
 def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -56,3 +60,13 @@ def _summarise(recorder: Recorder, ended: str, wall_time: float) -> None:
         plugins=plugins_used(simulation.case),
     )
     write_json(directory.summary, summary)
+
+
+def _warn_of_fracture(simulation: Simulation) -> None:
+    fractured = simulation.measures.fractured(simulation.particles)
+    if fractured > FRACTURED and not simulation.case.scheme.splitting:
+        LOGGER.warning(
+            "at the end %.0f %% of the volume is in particles that are drawn apart further than a cell "
+            "(fractured_fraction): set scheme.splitting to true",
+            100 * fractured,
+        )

@@ -43,6 +43,8 @@ def _plan(simulation: Simulation, threads: int | None) -> dict[str, Any]:
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings = simulation.warnings()
+    if case.scheme.splitting:
+        warnings.append("particles that scheme.splitting adds later are not counted in memory and time")
     if not math.isfinite(case.until / step):
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"

@@ -64,7 +64,7 @@ class Measures:
             "total_mass": float(np.sum(p.mass)),
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
             "max_speed": float(np.sqrt(squared.max())),
-            "fractured_fraction": self._fractured(p),
+            "fractured_fraction": self.fractured(p),
         }
 
     def _spread(self, p: Particles, of: np.ndarray) -> float:
@@ -79,7 +79,7 @@ class Measures:
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
 
-    def _fractured(self, p: Particles) -> float:
+    def fractured(self, p: Particles) -> float:
         """Part of the volume in boxes longer than a cell: its neighbours share no cell with it any more."""
         longest = p.box.max(axis=1)
         apart = longest > self.grid.cell_size / 2 * (1 + 1e-9)
