@@ -14,13 +14,13 @@ from .layout import Layout
 from .particles import Particles
 from .time_step import limits
 
-LEAST_WIDTH = 0.25
-"""Width, in cells, below which a domain that follows the strain does not get, unless it began with less.
+LEAST_WIDTH = 1 / 8
+"""Width, in cells a dimension, below which a domain that follows the strain does not get, unless it began so.
 
 At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
 e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
-thin, such a node gets stiff. USL, which takes its stress from that node, bears √(2 w) of dx/c and 2 w of the
-viscous limit: at a quarter of a cell, 0.7 and 0.5.
+thin, such a node gets stiff, in a corner along d axes at once. USL, which takes its stress from that node, is
+left with about √(2 w/d) of dx/c and 2 w/d of the viscous limit: at w = d/8, a half and a quarter.
 """
 
 
@@ -40,7 +40,7 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
         self.mean_speed = 0.0
-        self._least_half_size = min(LEAST_WIDTH * grid.cell_size / 2, float(particles.half_size.min()))
+        self._least_half_size = min(LEAST_WIDTH * dim * grid.cell_size / 2, float(particles.half_size.min()))
         self._in_space = "2d" if dim == 2 else "3d"
         self._scatter = getattr(scatter, f"scatter_{self._in_space}")
         self._advance = getattr(gather, f"advance_{self._in_space}")
