@@ -14,7 +14,7 @@ COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}']
 UNTIL = 1.0
 RUNS = (
     ("slump", COARSE, "axisymmetric, 900 particles at first", {"color": "#0072B2"}),
-    ("slump_quarter", [], "quarter model, 11,011 particles at first", {"color": "#009E73", "linestyle": "-."}),
+    ("slump_quarter", [], "quarter model, 11,011 particles at first", {"color": "#009E73", "ls": "-."}),
 )
 
 

@@ -11,7 +11,7 @@ from .compile import CHUNK, chunk_count, kernel
 
 @kernel()
 def follow_strain(L, dt, half_size):
-    """l_i ← l_i (1 + Δt D_ii): the box follows the normal strain along each axis.
+    """l_i ← l_i (1 + Δt D_ii), ``(n, dim)``, m: the box follows the normal strain along each axis.
 
     What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
     keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave

@@ -19,8 +19,8 @@ LEAST_WIDTH = 0.25
 
 At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
 e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
-thin, such a node gets stiff. USL, which takes its stress from that node, bears √(2 w) of dx/c and 2 w of the
-viscous limit: at a quarter of a cell, 0.7 and 0.5.
+thin, such a node gets stiff. USL, which takes its stress from that node, bears at most √(2 w) of dx/c and 2 w
+of the viscous limit: at a quarter of a cell, 0.7 and 0.5. With FLIP it bears 0.50 of dx/c there, by trying.
 """
 
 
@@ -194,7 +194,8 @@ class SceneOperations:
         """J ← J + (1 - exp(-rate Δt)) (A J - J), with A the average over the grid by initial volume.
 
         A is symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any
-        convex energy Σ V0 e(J) does not grow.
+        convex energy Σ V0 e(J) does not grow. That is one e, of one material: fluids of different moduli in
+        contact are drawn to one J, not to one pressure.
         """
         rate = self.scheme.volumetric.relaxation_rate(self)
         if rate == 0.0:
