@@ -84,16 +84,17 @@ def sheet(name: str, panels: list[tuple], columns: int) -> None:
 
 def table(results: list[Result], first: str) -> str:
     lines = [
-        f"| {first} | T500 (s) | largest departure | D at 0.5, 1, 2, 4 s (mm) "
-        "| final height, largest and on the axis (mm) | energy from 2 s on (J) | particles at the end | wall time (s) |",
+        f"| {first} | T500 (s) | largest departure | D at 0.5, 1, 2, 4 s (mm) | final height, largest and on "
+        "the axis (mm) | energy from 2 s on (J) | particles at the end | wall time (s) |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for r in results:
         ended = "" if r.stopped is None else f" (stopped at {r.time[-1]:g} s)"
         spreads = ", ".join(r.at(t) for t in (0.5, 1, 2, 4))
         lines.append(
-            f"| {r.label}{ended} | {r.t500} | {r.departure:.2f} % | {spreads} | {1e3 * r.height[-1]:.1f}, "
-            f"{1e3 * r.axis_height[-1]:.1f} | {r.energy_from_2_s} | {r.particles:,} | {r.wall_time:.0f} |"
+            f"| {r.label}{ended} | {r.t500} | {r.departure:.2f} % | {spreads} | "
+            f"{1e3 * r.height[-1]:.1f}, {1e3 * r.axis_height[-1]:.1f} | {r.energy_from_2_s} | "
+            f"{r.particles:,} | {r.wall_time:.0f} |"
         )
     return "\n".join(lines)
 

@@ -5,6 +5,7 @@
 Takes about a minute. The second floor is no choice of mpmkit; it is put in here from outside.
 """
 
+import numba
 import numpy as np
 from common import DOCS, figure, plot_reference
 from floors import hold_floor
@@ -26,6 +27,7 @@ def spread(simulation: mpmkit.Simulation) -> list[float]:
 
 
 def main() -> None:
+    numba.set_num_threads(1)  # 900 particles are too few for more
     path = DOCS.parent / "cases/slump_as_published.json"
     mirror = mpmkit.Simulation(mpmkit.load_case(path, COARSE))
     zero = mpmkit.Simulation(mpmkit.load_case(path, [*COARSE, "grid.faces.z_min=open"]))

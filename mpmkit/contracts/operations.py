@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-Measure = Literal["mass", "volume", "initial-volume"]
+Measure = Literal["mass", "volume"]
 
 
 class Operations(Protocol):

@@ -26,5 +26,9 @@ class VolumetricTreatment(Plugin):
         """The treated field A f, ``(n,)``; a new array, or ``field`` itself."""
 
     def relaxation_rate(self, ops: Operations) -> float:
-        """Rate, 1/s, at which each particle's J is drawn to the average of those around it."""
+        """Rate, 1/s, at which each particle's J is drawn to the average of those around it.
+
+        The average is by initial volume. The rate should not depend on the step: in each, J relaxes by
+        1 - exp(-rate dt) of the difference.
+        """
         return 0.0

@@ -11,7 +11,7 @@ from .compile import CHUNK, chunk_count, kernel
 
 @kernel()
 def follow_strain(L, dt, half_size):
-    """l_i ← l_i (1 + Δt D_ii): the box follows the normal strain along each axis.
+    """l_i ← l_i (1 + Δt D_ii), ``(n, dim)``, m: the box follows the normal strain along each axis.
 
     What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
     keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave
@@ -22,6 +22,16 @@ def follow_strain(L, dt, half_size):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             for a in range(dim):
                 half_size[p, a] *= 1 + dt * L[p, a, a]
+
+
+@kernel()
+def bound_below(box, initial_half_size, least, half_size):
+    """l = max(box, min(l0, least)): no thinner than ``least``, unless it began so."""
+    n, dim = half_size.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            for a in range(dim):
+                half_size[p, a] = max(box[p, a], min(initial_half_size[p, a], least))
 
 
 @kernel()

@@ -60,7 +60,7 @@ def elastic_trial(L, dt, shear_modulus, stress, shear_stress):
 
 @kernel()
 def shrink(stress, shear_stress, allowed):
-    """Scale the stress radially from its shear stress to the allowed one."""
+    """s ← s τ/τ*, in place, ``(n, 6)``: radially from its shear stress τ* to the allowed τ, ``(n,)``, Pa."""
     n = len(stress)
     for chunk in prange(chunk_count(n)):
         for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):

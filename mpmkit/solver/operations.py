@@ -11,7 +11,7 @@ from ..contracts.operations import Measure
 from ..kernels import domains, gather, nodes, scatter, tensors
 from .grid import Grid, Window
 from .layout import Layout
-from .particles import Particles
+from .particles import Group, Particles
 from .time_step import limits
 
 LEAST_WIDTH = 1 / 8
@@ -40,7 +40,7 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
         self.mean_speed = 0.0
-        self._least_half_size = min(LEAST_WIDTH * dim * grid.cell_size / 2, float(particles.half_size.min()))
+        self._least_half_size = LEAST_WIDTH * dim * grid.cell_size / 2
         self._in_space = "2d" if dim == 2 else "3d"
         self._scatter = getattr(scatter, f"scatter_{self._in_space}")
         self._advance = getattr(gather, f"advance_{self._in_space}")
@@ -173,7 +173,7 @@ class SceneOperations:
         p, rule = self.particles, self.scheme.shape.particle_domain
         domains.follow_strain(p.velocity_gradient, dt, p.box)
         if rule == "strain":
-            np.maximum(p.box, self._least_half_size, out=p.half_size)
+            domains.bound_below(p.box, p.initial_half_size, self._least_half_size, p.half_size)
         elif rule == "stretch":
             domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
         elif rule == "volume":
@@ -191,35 +191,41 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        """J ← J + (1 - exp(-rate Δt)) (A J - J), with A the average over the grid by initial volume.
+        """J ← J + (1 - exp(-rate Δt)) (A J - J), with A the average over a material by initial volume.
 
         A is symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any
-        convex energy Σ V0 e(J) does not grow.
+        convex energy Σ V0 e(J) does not grow. Each material is averaged by itself: at one pressure, two of
+        them have two volume ratios.
         """
         rate = self.scheme.volumetric.relaxation_rate(self)
         if rate == 0.0:
             return
-        J = self.particles.volume_ratio
-        mean = self.nodes_to_particles(self.particles_to_nodes(J, "initial-volume"))
-        for group in self.particles.groups:
+        p = self.particles
+        for group in p.groups:
             if group.law.uses_equation_of_state:
-                part = group.part
-                J[part] += -math.expm1(-rate * dt) * (mean[part] - J[part])
+                mean = self.nodes_to_particles(self._average(p.volume_ratio, self._only(group)))
+                p.volume_ratio[group.part] += -math.expm1(-rate * dt) * (mean - p.volume_ratio)[group.part]
+
+    def _only(self, group: Group) -> np.ndarray:
+        """Initial volumes of a material, zero for the others."""
+        p = self.particles
+        if len(p.groups) == 1:
+            return p.initial_volume
+        measure = np.zeros(len(p))
+        measure[group.part] = p.initial_volume[group.part]
+        return measure
 
     # --- Fields in general
 
     def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        return self._average(values, self._measure(measure))
+
+    def _average(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """Σ w N f / Σ w N at the nodes; zero where nothing is."""
         w = self.window
         field = np.zeros((len(w.nodes), 2))
         scatter.scatter_scalar(
-            field,
-            w.strides,
-            w.lower,
-            self.layout.slabs,
-            self.base,
-            self.weight,
-            self._measure(measure),
-            values,
+            field, w.strides, w.lower, self.layout.slabs, self.base, self.weight, weight, values
         )
         nodes.fold(field, *self._faces(), 0, 2, False)
         total, weighted = field[:, 0], field[:, 1]
@@ -230,7 +236,7 @@ class SceneOperations:
     def _measure(self, name: Measure) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
-        measure = {"mass": p.mass, "volume": p.volume, "initial-volume": p.initial_volume}[name]
+        measure = p.mass if name == "mass" else p.volume
         if name != "mass" and not all(group.law.uses_equation_of_state for group in p.groups):
             measure = measure.copy()
             for group in p.groups:

@@ -48,6 +48,15 @@ def test_uniaxial_flow_of_the_concrete():
         assert stress[0, 0] - stress[2, 2] == pytest.approx(exact, rel=1e-6)
 
 
+@pytest.mark.parametrize("n", [0.01, 0.1, 3.0, 10.0])
+def test_extreme_indices_are_finite_and_between_yield_and_trial(n):
+    law = make(LAWS["herschel-bulkley-evp"], flow_index=n)
+    trial = TAU0 * (1 + np.geomspace(1e-12, 1e6, 200))
+    found = law.relaxed_stress(trial, 5.0)
+    assert np.all(np.isfinite(found))
+    assert np.all((found >= TAU0 * (1 - 1e-12)) & (found <= trial * (1 + 1e-12)))
+
+
 @pytest.mark.parametrize("n", [0.5, 1.0, 1.33])
 @pytest.mark.parametrize("stiffness", [1e-3, 1.0, 1e3])
 def test_newton_and_the_general_solution_agree(n, stiffness):

@@ -107,6 +107,35 @@ def test_relaxation_keeps_the_volume_and_only_loses_energy(space):
     assert energies[-1] < 0.5 * energies[0]
 
 
+def test_relaxation_leaves_two_fluids_at_one_pressure(validate):
+    """Sound speeds differ, and so do the volume ratios of one pressure: each is averaged by itself."""
+    case = {
+        "space": "plane-strain",
+        "until": 1.0,
+        "gravity": [0.0, 0.0],
+        "grid": {"cell_size": DX, "domain": {"x": [0.0, 0.8], "z": [0.0, 0.8]}},
+        "bodies": [
+            {
+                "shape": {"kind": "box", "lower": [0.0, low], "upper": [0.8, low + 0.4]},
+                "material": {"law": "newtonian", "viscosity": 0.0, "density": 1000.0, "sound_speed": speed},
+            }
+            for low, speed in ((0.0, 10.0), (0.4, 30.0))
+        ],
+    }
+    simulation = mpmkit.Simulation(mpmkit.parse_case(case))
+    operations, p = simulation.operations, simulation.particles
+    operations.mean_speed = 1.0
+    operations.begin()
+    pressure = 5000.0
+    for group in p.groups:
+        p.volume_ratio[group.part] = 1 / (1 + pressure / (1000.0 * group.sound_speed**2))
+    for _ in range(10):
+        operations.relax_volume(0.01)
+    found = np.concatenate([group.pressure(p.volume_ratio[group.part]) for group in p.groups])
+    off = float(np.abs(found / pressure - 1).max())
+    validate("Two fluids at one pressure, relaxed: pressure off", off, below(1e-10, "0"))
+
+
 def energy(simulation):
     found = simulation.measures(simulation.particles)
     return found["kinetic_energy"] + found["compressive_energy"]

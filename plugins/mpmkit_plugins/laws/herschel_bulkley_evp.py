@@ -43,7 +43,11 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index):
     if consistency == 0.0:
         return yield_stress
     part = excess if flow_index >= 1.0 else 0.5 * excess
-    rate = min((part / consistency) ** (1.0 / flow_index), part / stiffness)
+    rate = part / stiffness
+    if consistency * rate**flow_index > part:
+        rate = (part / consistency) ** (1.0 / flow_index)
+    if rate == 0.0:  # a flow index of nearly nothing: the stress rises as it would without flow
+        return trial
     for _ in range(50):
         power = consistency * rate**flow_index
         change = (excess - power - stiffness * rate) / (flow_index * power / rate + stiffness)
