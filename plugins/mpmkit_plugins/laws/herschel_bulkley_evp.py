@@ -1,5 +1,7 @@
 """Herschel and Bulkley's fluid with an exact yield stress."""
 
+import math
+
 import numba
 import numpy as np
 
@@ -43,9 +45,8 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index):
     if consistency == 0.0:
         return yield_stress
     part = excess if flow_index >= 1.0 else 0.5 * excess
-    rate = part / stiffness
-    if consistency * rate**flow_index > part:
-        rate = (part / consistency) ** (1.0 / flow_index)
+    # The smaller of (part / k)^(1/n) and part / (G Δt), by logarithms: the first may be beyond any number.
+    rate = math.exp(min(math.log(part / consistency) / flow_index, math.log(part / stiffness)))
     if rate == 0.0:  # a flow index of nearly nothing: the stress rises as it would without flow
         return trial
     for _ in range(50):
