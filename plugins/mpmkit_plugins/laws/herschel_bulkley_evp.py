@@ -47,7 +47,7 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index):
     part = excess if flow_index >= 1.0 else 0.5 * excess
     # The smaller of (part / k)^(1/n) and part / (G Δt), by logarithms: the first may be beyond any number.
     rate = math.exp(min(math.log(part / consistency) / flow_index, math.log(part / stiffness)))
-    if rate == 0.0:  # a flow index of nearly nothing: the stress rises as it would without flow
+    if rate < 1e-300:  # a flow index of nearly nothing: the stress rises as it would without flow
         return trial
     for _ in range(50):
         power = consistency * rate**flow_index
