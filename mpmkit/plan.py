@@ -26,7 +26,7 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     Returns:
         ``particles``, ``nodes`` (along each axis, ghosts included), ``steps``, ``time_step`` (s), ``limits``
         (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body each), ``memory_bytes``,
-        ``expected_seconds``, ``warnings``.
+        ``expected_seconds``, ``remarks`` (of the laws), ``warnings``.
 
     Raises:
         CaseError: the case cannot be run.
@@ -61,6 +61,7 @@ def _plan(simulation: Simulation, threads: int | None) -> dict[str, Any]:
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, particles),
         "expected_seconds": steps * seconds_per_step,
+        "remarks": simulation.remarks(),
         "warnings": warnings + stopped,
     }
 

@@ -114,6 +114,8 @@ def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
         "%s: %d particles, step %.4g s (%s), threads: %d",
         case.name, len(simulation.particles), simulation.time_step, share, threads,
     )  # fmt: skip
+    for sentence in simulation.remarks():
+        LOGGER.info("%s", sentence)
     for sentence in simulation.warnings():
         LOGGER.warning("%s", sentence)
     start = clock.monotonic()

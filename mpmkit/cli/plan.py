@@ -43,6 +43,7 @@ def command(
         f"steps          {_counted(cost['steps'])}",
         f"memory         {max(1, round(cost['memory_bytes'] / 2**20)):,} MiB",
         f"expected time  {duration(max(1.0, cost['expected_seconds']))} on this machine",
+        *cost["remarks"],
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
     click.echo("\n".join(lines))

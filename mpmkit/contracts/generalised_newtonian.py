@@ -60,6 +60,16 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
             return speed
         return maxwell.wave_speed(maxwell.shear_modulus(None, density, speed), density, speed)
 
+    def remarks(self, density: float, sound_speed: float | None) -> list[str]:
+        if self.form == "explicit":
+            return []
+        modulus = maxwell.shear_modulus(None, density, sound_speed)
+        at_rest = float(self.apparent_viscosity(np.array([REST_SHEAR_RATE]))[0])
+        return [
+            f"law '{self.name}', relaxed, follows a change of stress within mu/G, at rest "
+            f"{at_rest / modulus:.3g} s, G = {modulus:.4g} Pa"
+        ]
+
     def strain_energy(
         self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:

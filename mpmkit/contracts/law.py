@@ -75,6 +75,10 @@ class ConstitutiveLaw(Plugin):
         """Largest viscosity, Pa s, between rest and a shear rate, for the viscous limit of the time step."""
         return 0.0
 
+    def remarks(self, density: float, sound_speed: float | None) -> list[str]:
+        """What a user should know of the law in this material: sentences for the log and for ``plan``."""
+        return []
+
     def strain_energy(
         self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:

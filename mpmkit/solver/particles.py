@@ -25,6 +25,11 @@ class Group:
         """Fastest wave of the law, m/s."""
         return self.law.wave_speed(self.density, self.sound_speed)
 
+    @property
+    def remarks(self) -> list[str]:
+        """What the law has to say of itself in this material."""
+        return self.law.remarks(self.density, self.sound_speed)
+
     def pressure(self, volume_ratio: np.ndarray) -> np.ndarray:
         """Pressure of the equation of state, Pa; for a law that uses one."""
         assert self.sound_speed is not None

@@ -54,6 +54,10 @@ class Simulation:
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits)
         self.operations.mean_speed = self._mean_speed()
 
+    def remarks(self) -> list[str]:
+        """What the laws have to say of themselves."""
+        return [sentence for group in self.particles.groups for sentence in group.remarks]
+
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""
         return warnings(self.case.scheme, self.limits, self.time_step)

@@ -293,6 +293,13 @@ def test_wave_speed(law):
 
 
 @every_law
+def test_remarks_are_sentences_that_name_the_law(law):
+    remarks = law.remarks(DENSITY, SOUND_SPEED if law.uses_equation_of_state else None)
+    assert all(law.name in sentence and "nan" not in sentence for sentence in remarks)
+    assert bool(remarks) == remembers(law)
+
+
+@every_law
 def test_case_file_form_round_trips(law):
     assert type(law).model_validate(law.model_dump()) == law
 

@@ -167,3 +167,19 @@ def test_energy_of_a_swinging_block(validate, space, order):
         strays[1] / strays[0],
         below(0.8, "√1/2") if order == "usl" else below(0.6, "1/2"),
     )
+
+
+@pytest.mark.parametrize("volumetric", REGISTRY.of_kind("volumetric"))
+@pytest.mark.parametrize("space", ["plane-strain", "axisymmetric"])
+def test_the_axis_lowers_no_limit(validate, space, volumetric):
+    """Noise in a block, at 0.9 of dx/c: it grows no more around an axis of symmetry than beside a wall."""
+    simulation = block(
+        space, order="musl", volumetric=volumetric, velocity="flip", time_step={"fraction": 0.9}
+    )
+    p = simulation.particles
+    p.velocity[:] = 1e-7 * np.random.default_rng(1).normal(size=p.velocity.shape)
+    start = energy(simulation)
+    for _ in range(400):
+        simulation.advance()
+    grown = energy(simulation) / start
+    validate(f"Noise at 0.9 dx/c, {space}, {volumetric}: energy over the initial one", grown, below(1.5, "1"))
