@@ -51,7 +51,7 @@ def bytes_per_particle(case: Case) -> int:
     dim, support = case.space_.dim, case.scheme.shape.support
     laws = [body.material.constitutive_law for body in case.bodies]
     number_mass_volumes_pressures_rate = 8
-    vectors = 5 * dim
+    vectors = 6 * dim
     affine = (dim * dim + dim * support) * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)

@@ -109,18 +109,10 @@ def _report(case: Case, directory: RunDirectory) -> None:
 def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
     simulation, directory = recorder.simulation, recorder.directory
     case = simulation.case
-    share = f"{case.scheme.time_step.fraction:.3g} of the {simulation.limited_by} limit"
-    LOGGER.info(
-        "%s: %d particles, step %.4g s (%s), threads: %d",
-        case.name, len(simulation.particles), simulation.time_step, share, threads,
-    )  # fmt: skip
-    for sentence in simulation.remarks():
-        LOGGER.info("%s", sentence)
-    for sentence in simulation.warnings():
-        LOGGER.warning("%s", sentence)
     start = clock.monotonic()
     try:
         with blaming_plugins(case, lambda: (simulation.steps, simulation.time)):
+            _announce(simulation, threads)
             _advance(simulation, recorder, listen)
         conclude(recorder, "finished", clock.monotonic() - start)
     except GuardStop as stop:
@@ -139,6 +131,21 @@ def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
         LOGGER.error("%s", reason(error), exc_info=True)
         salvage(recorder, "error", clock.monotonic() - start)
         raise
+
+
+def _announce(simulation: Simulation, threads: int) -> None:
+    limit = simulation.limits.as_dict().get(simulation.limited_by)
+    share = (
+        "" if limit is None else f" ({simulation.time_step / limit:.3g} of the {simulation.limited_by} limit)"
+    )
+    LOGGER.info(
+        "%s: %d particles, step %.4g s%s, threads: %d",
+        simulation.case.name, len(simulation.particles), simulation.time_step, share, threads,
+    )  # fmt: skip
+    for sentence in simulation.remarks():
+        LOGGER.info("%s", sentence)
+    for sentence in simulation.warnings():
+        LOGGER.warning("%s", sentence)
 
 
 def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None) -> None:

@@ -69,6 +69,12 @@ BAD = [
     ("scheme.time_step.frac", 0.2, "scheme.time_step has an unknown key 'frac'; did you mean 'fraction'?"),
     ("output.histroy_interval", 1, "unknown key 'histroy_interval'; did you mean 'history_interval'?"),
     ("line\nbreak", 1, "unknown key 'line break'"),
+    (
+        MATERIAL,
+        {"law": "bingham-evp", "density": 1, "sound_speed": 1, "yield_stress": 1, "plastic_viscosity": 1}
+        | {"shear_modulus": 1e308},
+        "bodies.0.material makes waves of",
+    ),
     # missing
     ("until", ABSENT, "until is missing; it must be a number above 0, in s"),
     (

@@ -20,6 +20,8 @@ WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
 MOST_CELLS = 2**30
 """Cells along an axis: the first node of a particle is a 32-bit integer."""
+MOST_SPEED = 1e12
+"""m/s; faster than any wave, and slow enough for the step to be a number."""
 MOST_OUTPUTS = 100_000
 """Rows of a history, or frames, that a run may be asked for."""
 
@@ -42,6 +44,7 @@ def check(case: Case) -> None:
         except ValueError as error:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
+        _check_wave_speed(f"{where}.material", body.material, case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)
@@ -161,6 +164,19 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     if speed is not None and not math.isfinite(material.density * speed * speed):
         given = f"{material.sound_speed:g}" if isinstance(material.sound_speed, float) else f"{speed:g} m/s"
         raise ValueError(f"{field} is {given}, so that density times its square is too large for a number")
+
+
+def _check_wave_speed(field: str, material: Material, case: Case) -> None:
+    """Parameters that are numbers each may make a wave that is none, and a step of zero."""
+    try:
+        speed = material.constitutive_law.wave_speed(material.density, case.sound_speed(material))
+    except OverflowError:
+        speed = math.inf
+    if not 0 < speed < MOST_SPEED:
+        raise ValueError(
+            f"{field} makes waves of {speed:.3g} m/s; its moduli and its density must give less than "
+            f"{MOST_SPEED:g} m/s"
+        )
 
 
 def _check_time_step(case: Case) -> None:

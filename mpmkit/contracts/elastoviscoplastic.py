@@ -50,7 +50,7 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
 
     def remarks(self, density: float, sound_speed: float | None) -> list[str]:
         modulus = maxwell.shear_modulus(self.shear_modulus, density, sound_speed)
-        strain = float(self.flow_curve(np.array([REST_SHEAR_RATE]))[0]) / modulus
+        strain = float(np.ravel(self.flow_curve(np.array([REST_SHEAR_RATE])))[0]) / modulus
         percent = f"{100 * strain:.3g} %"
         return [f"law '{self.name}' is elastic up to a strain of tau0/G = {percent}, G = {modulus:.4g} Pa"]
 

@@ -64,7 +64,7 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         if self.form == "explicit":
             return []
         modulus = maxwell.shear_modulus(None, density, sound_speed)
-        at_rest = float(self.apparent_viscosity(np.array([REST_SHEAR_RATE]))[0])
+        at_rest = float(np.ravel(self.apparent_viscosity(np.array([REST_SHEAR_RATE])))[0])
         return [
             f"law '{self.name}', relaxed, follows a change of stress within mu/G, at rest "
             f"{at_rest / modulus:.3g} s, G = {modulus:.4g} Pa"

@@ -65,25 +65,42 @@ def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndar
 def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) -> np.ndarray:
     """τ of f(γ̇) + G Δt γ̇ = τ* for any rising flow curve, by the Illinois rule on 0 <= γ̇ <= τ*/(G Δt).
 
+    Every third step halves the bracket on a logarithmic scale instead, since a flow curve may turn anywhere.
+
     Args:
         curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is the
             yield stress.
         trial: τ*, ``(n,)``, Pa.
         stiffness: G Δt, Pa s.
         least_rate: shear rate that stands for rest, 1/s.
+
+    Raises:
+        ArithmeticError: no rate is found; the curve does not rise.
     """
     result = trial.copy()
     low = np.full(len(trial), least_rate)
     flows = np.flatnonzero(curve(low) + stiffness * low < trial)
+    if not len(flows):
+        return result
     target, low = trial[flows], low[flows]
     high = np.maximum(target / stiffness, least_rate)
+    with np.errstate(over="ignore"):  # a curve may be beyond any number at the rate of the spring alone
+        for _ in range(200):
+            beyond = ~np.isfinite(curve(high) + stiffness * high)
+            if not beyond.any():
+                break
+            middle = np.sqrt(low * high)
+            short = curve(middle) + stiffness * middle < target
+            low = np.where(beyond & short, middle, low)
+            high = np.where(beyond & ~short, middle, high)
     below = curve(low) + stiffness * low - target
     above = curve(high) + stiffness * high - target
     side = np.zeros(len(flows), dtype=np.int8)
     rate, open_ = low.copy(), np.ones(len(flows), dtype=bool)
-    for _ in range(200):
+    for step in range(300):
         # What has converged stays as it is, so that no particle depends on how long another one takes.
-        rate = np.where(open_, (low * above - high * below) / (above - below), rate)
+        tried = (low * above - high * below) / (above - below) if step % 3 else np.sqrt(low * high)
+        rate = np.where(open_, tried, rate)
         rest = curve(rate) + stiffness * rate - target
         open_ &= np.abs(rest) > 1e-13 * target
         if not open_.any():
@@ -94,5 +111,7 @@ def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) 
         above = np.where(up, rest, np.where(side == -1, above / 2, above))
         high, low = np.where(up, rate, high), np.where(up, low, rate)
         side = np.where(up, 1, -1).astype(np.int8)
+    else:
+        raise ArithmeticError(f"no shear rate gives {target[open_][0]:.6g} Pa: the flow curve must rise")
     result[flows] = target - stiffness * rate
     return result

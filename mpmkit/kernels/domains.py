@@ -25,16 +25,6 @@ def follow_strain(L, dt, half_size):
 
 
 @kernel()
-def bound_below(box, initial_half_size, least, half_size):
-    """l = max(box, min(l0, least)): no thinner than ``least``, unless it began so."""
-    n, dim = half_size.shape
-    for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            for a in range(dim):
-                half_size[p, a] = max(box[p, a], min(initial_half_size[p, a], least))
-
-
-@kernel()
 def follow_volume(volume_ratio, initial_half_size, half_size):
     """l = l0 J^(1/dim)."""
     n, dim = half_size.shape

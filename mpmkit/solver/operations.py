@@ -14,15 +14,6 @@ from .layout import Layout
 from .particles import Group, Particles
 from .time_step import limits
 
-LEAST_WIDTH = 1 / 8
-"""Width, in cells a dimension, below which a domain that follows the strain does not get, unless it began so.
-
-At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
-e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
-thin, such a node gets stiff, in a corner along d axes at once. USL, which takes its stress from that node, is
-left with about √(2 w/d) of dx/c and 2 w/d of the viscous limit: at w = d/8, a half and a quarter.
-"""
-
 
 class SceneOperations:
     """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
@@ -40,7 +31,6 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
         self.mean_speed = 0.0
-        self._least_half_size = LEAST_WIDTH * dim * grid.cell_size / 2
         self._in_space = "2d" if dim == 2 else "3d"
         self._scatter = getattr(scatter, f"scatter_{self._in_space}")
         self._advance = getattr(gather, f"advance_{self._in_space}")
@@ -173,7 +163,7 @@ class SceneOperations:
         p, rule = self.particles, self.scheme.shape.particle_domain
         domains.follow_strain(p.velocity_gradient, dt, p.box)
         if rule == "strain":
-            domains.bound_below(p.box, p.initial_half_size, self._least_half_size, p.half_size)
+            np.maximum(p.box, p.least_half_size, out=p.half_size)
         elif rule == "stretch":
             domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
         elif rule == "volume":

@@ -59,6 +59,8 @@ class Particles:
     initial_half_size: np.ndarray
     half_size: np.ndarray
     """(n, dim) half side lengths of the domains that the shape function sees, by its own rule"""
+    least_half_size: np.ndarray
+    """(n, dim) half side lengths below which the domains do not get by strain"""
     box: np.ndarray
     """(n, dim) half side lengths of the material's boxes, m, by the normal strain along each axis"""
     velocity_gradient: np.ndarray

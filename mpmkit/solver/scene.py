@@ -9,6 +9,15 @@ from ..errors import CaseError
 from ..geometry import Sample, sample
 from .particles import Group, Particles
 
+LEAST_WIDTH = 1 / 8
+"""Width, in cells a dimension, below which a domain that follows the strain does not get, unless it began so.
+
+At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
+e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
+thin, such a node gets stiff, in a corner along d axes at once. USL, which takes its stress from that node, is
+left with about √(2 w/d) of dx/c and 2 w/d of the viscous limit: at w = d/8, a half and a quarter.
+"""
+
 
 def particles_along_axes(body: Body, dim: int) -> tuple[int, ...]:
     """Particles along each axis of a cell."""
@@ -62,6 +71,7 @@ def make_particles(case: Case) -> Particles:
         volume_ratio=np.ones(n),
         initial_half_size=half_size,
         half_size=half_size.copy(),
+        least_half_size=np.minimum(half_size, LEAST_WIDTH * case.space_.dim * case.grid.cell_size / 2),
         box=half_size.copy(),
         velocity_gradient=np.zeros((n, 3, 3)),
         stress=np.zeros((n, 6)),

@@ -15,7 +15,7 @@ from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
 from .scene import make_particles
-from .splitting import split
+from .splitting import OutOfMemory, split
 from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
@@ -74,10 +74,8 @@ class Simulation:
         """
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
-            if self.case.scheme.splitting and split(
-                self.particles, self.grid.extent, self.grid.cell_size, self.case.space_.radial
-            ):
-                self.operations.allocate()
+            if self.case.scheme.splitting:
+                self._split()
             self.choose_time_step()
         try:
             lost = self.operations.begin()
@@ -94,6 +92,13 @@ class Simulation:
         self.particle_steps += len(self.particles)
         return dt
 
+    def _split(self) -> None:
+        try:
+            if split(self.particles, self.grid, self.case.space_.radial):
+                self.operations.allocate()
+        except OutOfMemory as error:
+            self._stop(error.particle, drawn_out=True)
+
     def check(self) -> None:
         """Raise GuardStop if a particle has a state that is not finite, or a volume that is not positive."""
         p = self.particles
@@ -104,7 +109,7 @@ class Simulation:
         if not (p.volume_ratio > 0).all():
             self._stop(int(np.argmin(p.volume_ratio)))
 
-    def _stop(self, index: int, scattered: bool = False) -> NoReturn:
+    def _stop(self, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
         """Raise the GuardStop that fits what has become of a particle."""
         p, axes = self.particles, self.grid.axes
         number, position = int(p.number[index]), p.position[index] + self.grid.lower
@@ -122,6 +127,10 @@ class Simulation:
             sides = ", ".join(f"{2 * size:.3g}" for size in p.half_size[index])
             what = f"has a domain with sides of {sides} m"
             cure = "the run diverged, reduce scheme.time_step.fraction"
+        elif drawn_out:
+            guard = "splitting"
+            what = "and others are drawn out so far that their halves do not fit into memory"
+            cure = "if the run diverges, reduce scheme.time_step.fraction"
         elif scattered:
             guard = "scattered"
             what = "is so far from the others that the nodes between them do not fit into memory"

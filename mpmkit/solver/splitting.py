@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import psutil
 
+from .grid import Grid
 from .particles import Particles
 
 SPLIT_WITH = 0.8
@@ -11,7 +13,19 @@ SPLIT_WITH = 0.8
 then grow rarely, and in large pieces."""
 
 
-def split(particles: Particles, extent: np.ndarray, cell_size: float, radial: bool) -> bool:
+class OutOfMemory(Exception):
+    """There is no room for the particles that splitting would add: a sign of a run that diverges.
+
+    Attributes:
+        particle: index of the one with the longest box.
+    """
+
+    def __init__(self, particle: int) -> None:
+        super().__init__(f"particle at index {particle} is drawn out too far")
+        self.particle = particle
+
+
+def split(particles: Particles, grid: Grid, radial: bool) -> bool:
     """Halve every box that is longer than a cell along an axis; True if there was one.
 
     A box longer than a cell leaves cells without a particle, where the grid has no stiffness, and the
@@ -21,32 +35,32 @@ def split(particles: Particles, extent: np.ndarray, cell_size: float, radial: bo
 
     Args:
         particles: changed in place.
-        extent: lengths of the domain, m; the halves stay in it.
-        cell_size: m.
+        grid: its cells measure the boxes; the halves stay between its faces.
         radial: whether axis 0 is the radius of an axisymmetric scene.
     """
-    changed = False
+    changed, cell_size = False, grid.cell_size
     for axis in range(particles.dim):
         longest = cell_size / 2 * (1 + 1e-9)
         if particles.box[:, axis].max() <= longest:
             continue
         which = particles.box[:, axis] > SPLIT_WITH * longest
-        _halve(particles, which, axis, extent[axis], radial and axis == 0)
+        _require_memory(particles, which)
+        # A box does not reach beyond a face, nor across the axis; a periodic axis has no end.
+        x = particles.position[which, axis]
+        room = np.full(len(x), np.inf) if grid.periodic[axis] else np.minimum(x, grid.extent[axis] - x)
+        _halve(particles, which, axis, np.maximum(room, 0.0), radial and axis == 0)
         changed = True
     return changed
 
 
-def _halve(p: Particles, which: np.ndarray, axis: int, length: float, ring: bool) -> None:
+def _halve(p: Particles, which: np.ndarray, axis: int, room: np.ndarray, ring: bool) -> None:
     count = len(p)
     twice = np.repeat(np.arange(count), 1 + which)
     p.take(twice)
     inner = np.flatnonzero(np.diff(twice, append=-1) == 0)
     outer = inner + 1
     position = p.position[inner, axis]
-    to_face = np.minimum(
-        position, length - position
-    )  # a box does not reach beyond a face, nor across the axis
-    offset = np.minimum(p.box[inner, axis], to_face) / 2
+    offset = np.minimum(p.box[inner, axis], room) / 2
     share = np.full(len(inner), 0.5)
     if ring:
         share = (position - offset) / (2 * position)
@@ -60,3 +74,9 @@ def _halve(p: Particles, which: np.ndarray, axis: int, length: float, ring: bool
             from_centroid = shift - (1 - 2 * share) * offset
             p.velocity[half] += p.affine[half, :, axis] * from_centroid[:, None]
     p.number[outer] = np.arange(count, count + len(outer))
+
+
+def _require_memory(p: Particles, which: np.ndarray) -> None:
+    """Refuse to add particles that do not fit, copies while they are made included."""
+    if 3 * p.nbytes / len(p) * (len(p) + which.sum()) > psutil.virtual_memory().available:
+        raise OutOfMemory(int(np.argmax(p.box.max(axis=1))))

@@ -138,3 +138,31 @@ def test_relaxed_form_costs_a_delay_below_yield():
     after = specimens.drive(simple_shear(np.array([rate]), 0, 2), delay, 400)[0, 0, 2]
     steady = law.apparent_viscosity(np.array([rate]))[0] * rate
     assert after / steady == pytest.approx(1 - np.exp(-1.0), rel=0.02)
+
+
+def test_general_solution_of_a_curve_beyond_any_number():
+    """f = 50 + e^γ̇ overflows at the rate that the spring alone would have."""
+    trial = np.array([10.0, 60.0, 500.0, 1e5])
+    found = maxwell.solve(lambda rate: 50.0 + np.exp(rate) - 1.0, trial, 1e-3, REST_SHEAR_RATE)
+    rate = np.log(found[1:] - 49.0)
+    assert found[0] == 10.0
+    assert found[1:] + 1e-3 * rate == pytest.approx(trial[1:], rel=1e-9)
+
+
+def test_general_solution_of_a_curve_that_falls_is_refused():
+    with pytest.raises(ArithmeticError, match="rise"):
+        maxwell.solve(
+            lambda rate: np.where(rate < 1.0, 50.0, 500.0), np.array([200.0]), 1e-3, REST_SHEAR_RATE
+        )
+
+
+def test_perfect_plasticity_by_a_scalar():
+    class Plastic(ElastoviscoplasticLaw):
+        name, citation, api_version = "plastic", "none", 1
+
+        def flow_curve(self, shear_rate):
+            return 50.0
+
+    law = Plastic()
+    assert "strain" in law.remarks(DENSITY, SOUND_SPEED)[0]
+    assert law.relaxed_stress(np.array([10.0, 80.0]), 7.0) == pytest.approx([10.0, 50.0])

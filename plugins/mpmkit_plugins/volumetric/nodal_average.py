@@ -14,8 +14,7 @@ class NodalAverage(VolumetricTreatment):
     A cannot see what varies from particle to particle within its reach, so that nothing holds J together
     there; as particles move over the grid, some of what it did see gets lost in that blind spot. J is
     therefore drawn to its average at the rate at which the material crosses cells, a mean speed over a cell:
-    independent of the step, and nothing at rest. The average does not stop at the border of a material: for
-    fluids of different ρ0 c² in contact, where equal pressures are unequal J, ``relaxation`` is to be 0.
+    independent of the step, and nothing at rest.
     """
 
     name = "nodal-average"
