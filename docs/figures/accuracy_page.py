@@ -73,12 +73,25 @@ def draw(axes: Axes, results: list[Result], title: str, exact: bool = True, unti
     axes.legend(frameon=False, fontsize=7.5, loc="lower right")
 
 
+def draw_departures(axes: Axes, results: list[Result], title: str) -> None:
+    """D(t) over the reference, less one; a run that is off the scale leaves the picture."""
+    time, spread = reference()
+    axes.axhline(0.0, color="k", ls="--", lw=1.6)
+    for result, colour in zip(results, COLOURS, strict=False):
+        off = 100 * (result.spread / np.interp(result.time, time, spread) - 1)
+        axes.plot(result.time, off, color=colour, lw=1.2)
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.set(xlim=(0, 4), ylim=(-3, 3), xlabel="time (s)", ylabel="departure from the reference (%)")
+    axes.grid(alpha=0.3)
+
+
 def sheet(name: str, panels: list[tuple], columns: int) -> None:
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(5.2 * columns, 3.9 * rows), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     for number, panel in enumerate(panels):
-        draw(figure.add_subplot(rows, columns, number + 1), *panel)
+        painter, *arguments = panel if callable(panel[0]) else (draw, *panel)
+        painter(figure.add_subplot(rows, columns, number + 1), *arguments)
     figure.savefig(DOCS / "images" / f"accuracy_{name}.png")
 
 
@@ -120,7 +133,14 @@ def main() -> None:
             ("stick", STICK),
         )
     }
-    sheet("cures", [(groups["cures"], "One cure after the other, 5 mm")], 1)
+    sheet(
+        "cures",
+        [
+            (groups["cures"], "One cure after the other, 5 mm"),
+            (draw_departures, groups["cures"], "The same, over the reference"),
+        ],
+        2,
+    )
     sheet(
         "sensitivity",
         [
