@@ -10,16 +10,18 @@ import psutil
 from .case.model import Case
 from .errors import CaseError
 from .geometry import expected_count
-from .kernels.scatter import NODE
+from .kernels.scatter import NODE, PAIR
 from .output import PARTICLE_VARIABLES
 from .recorder import ROWS
 from .solver.scene import kept_box, particles_along_axes, tracks_deformation
 
 DOUBLE = 8
 INDEX = 4
-SORTING = 13
-"""Doubles a particle that a sort holds for a moment: a copy of the widest array, keys, order and cells."""
-MARGIN = 6
+PASSING = 4
+"""Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
+DOUBLES_PER_NODE = NODE + PAIR + 1
+"""A node's record, the sums of an average, and the average."""
+MARGIN = 5
 """Nodes along an axis by which the window is wider than the cells of the material."""
 
 
@@ -43,16 +45,16 @@ def expected_bytes(case: Case, particles: float) -> int:
     As the material spreads, so does the window of nodes that covers it; particles take most by far.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
-    return int(particles * (bytes_per_particle(case) + kept) + window_nodes(case) * NODE * DOUBLE)
+    return int(particles * (bytes_per_particle(case) + kept) + window_nodes(case) * DOUBLES_PER_NODE * DOUBLE)
 
 
 def bytes_per_particle(case: Case) -> int:
-    """State of a particle, its tables of weights, and its share of a sort."""
+    """State of a particle, its tables of weights, and what is held of it for a moment."""
     dim, support = case.space_.dim, case.scheme.shape.support
     laws = [body.material.constitutive_law for body in case.bodies]
     number_mass_volumes_pressures_rate = 8
-    vectors = 6 * dim
-    affine = (dim * dim + dim * support) * case.scheme.velocity.affine
+    vectors = 4 * dim + dim * (case.scheme.shape.particle_domain != "fixed")
+    affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
     doubles = (
@@ -65,7 +67,7 @@ def bytes_per_particle(case: Case) -> int:
     )
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
-    return int(DOUBLE * (doubles + tables + SORTING) + body_and_base)
+    return int(DOUBLE * (doubles + tables + PASSING) + body_and_base)
 
 
 def window_nodes(case: Case) -> float:
@@ -104,7 +106,7 @@ def require_memory(case: Case) -> None:
     particles = expected_particles(case)
     needed, there = expected_bytes(case, particles), psutil.virtual_memory().total
     if needed > there:
-        if window_nodes(case) * NODE * DOUBLE > needed / 2:
+        if window_nodes(case) * DOUBLES_PER_NODE * DOUBLE > needed / 2:
             raise CaseError(_too_wide(case, needed, there))
         fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(

@@ -35,8 +35,11 @@ class Operations(Protocol):
     def solve_momentum(self, dt: float) -> None:
         """Advance the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""
 
-    def map_to_particles(self, dt: float) -> None:
-        """Nodes to particles: velocity, as the velocity update has it, and position."""
+    def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
+        """Nodes to particles: velocity, as the velocity update has it, and position.
+
+        With ``velocity_gradient``, as ``update_velocity_gradient`` at the same time, in one pass.
+        """
 
     def remap_velocity(self) -> None:
         """Replace the nodal velocity by that of the updated particles (MUSL)."""
@@ -47,13 +50,16 @@ class Operations(Protocol):
     def update_stress(self, dt: float) -> None:
         """Deformation, volume ratio, pressure and stress of every particle."""
 
-    def advance(self, dt: float, *, flip: float) -> None:
+    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
         """x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ, with ṽ the new nodal velocity at the particle
-        and Δṽ what the step changed in it. Used by velocity updates."""
+        and Δṽ what the step changed in it. Used by velocity updates.
 
-    def update_affine(self) -> None:
-        """Nodes to particles: the affine part of the present nodal velocity, C = Σ N v (x_node - x̄)ᵀ D⁻¹ with
-        D = Σ N (x_node - x̄)(x_node - x̄)ᵀ. Used by velocity updates with ``affine = True``."""
+        With ``affine``, also the affine part of the nodal velocity, C = Σ N v (x_node - x̄)ᵀ D⁻¹ with the
+        diagonal D = Σ N (x_node - x̄)²; for velocity updates that say ``affine = True``.
+        """
+
+    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        """Average of a particle field over the grid, ``(n,)``: to the nodes and back to the particles."""
 
     def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
         """Average of a particle field around each node, Σ w N f / Σ w N: ``(n,)`` to nodes.

@@ -6,19 +6,36 @@ same instructions whatever the number of threads: results are equal to the bit.
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
+from typing import Any
 
 import numba
+
+from .code_cache import cached_code
 
 CHUNK = 256
 """Particles in a chunk: enough to hide the cost of scheduling, few enough to keep threads evenly busy."""
 
 # Contraction to fused multiply-adds is safe; full fastmath is not, it breaks isfinite.
-kernel = partial(numba.njit, cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
-inline = partial(numba.njit, cache=True, inline="always", error_model="numpy", fastmath={"contract"})
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
-@numba.njit(cache=True)
+def kernel() -> Callable[[Callable], Callable]:
+    """Decorator of a loop over all particles or nodes, with ``prange`` over chunks."""
+    return cached_code(numba.njit, parallel=True, **_OPTIONS)
+
+
+def function() -> Callable[[Callable], Callable]:
+    """Decorator of a function that kernels call, or that calls kernels."""
+    return cached_code(numba.njit, **_OPTIONS)
+
+
+def inline() -> Callable[[Callable], Callable]:
+    """Decorator of a small function that becomes part of the kernel that calls it."""
+    return cached_code(numba.njit, inline="always", **_OPTIONS)
+
+
+@function()
 def chunk_count(n: int) -> int:
     """Chunks that n particles make."""
     return (n + CHUNK - 1) // CHUNK

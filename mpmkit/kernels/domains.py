@@ -10,18 +10,24 @@ from .compile import CHUNK, chunk_count, kernel
 
 
 @kernel()
-def follow_strain(L, dt, half_size):
+def follow_strain(L, dt, box, least, half_size):
     """l_i ← l_i (1 + Δt D_ii), ``(n, dim)``, m: the box follows the normal strain along each axis.
+
+    The half-sizes that the shape function sees are those of the box, or ``least``; they stay as they are where
+    ``least`` has no rows.
 
     What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
     keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave
     the box as it is, where the stretch U_ii grows with shear, and F_ii shrinks as the material turns.
     """
-    n, dim = half_size.shape
+    n, dim = box.shape
+    follows = len(least) > 0
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             for a in range(dim):
-                half_size[p, a] *= 1 + dt * L[p, a, a]
+                box[p, a] *= 1 + dt * L[p, a, a]
+                if follows:
+                    half_size[p, a] = max(box[p, a], least[p, a])
 
 
 @kernel()

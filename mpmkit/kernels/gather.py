@@ -1,199 +1,203 @@
-"""Nodes to particles (G2P). A solved node's record holds mass, velocity (dim), change of velocity (dim)."""
+"""Nodes to particles (G2P). A solved node's record holds mass, velocity (dim), change of velocity (dim).
+
+Records are summed whole, as vectors, axis by axis: the sums along the innermost axis serve every term of
+their row, and those over a plane every term of the plane.
+"""
 
 from __future__ import annotations
 
+from functools import cache
+
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
+from .compile import CHUNK, chunk_count, inline, kernel
+from .scatter import NODE, centroid
+from .vectors import lane, load, plus, scale, zero
 
 LEAST_MOMENT = 0.125
 """Least second moment of the weights of cpGIMP with two particles an axis, in cells²."""
 
 
-@kernel()
-def advance_2d(nodes, strides, lower, base, weight, hoop, dt, flip, position, velocity):
-    """x ← x + dt ṽ; v ← flip (v + Δṽ) + (1 - flip) ṽ.
+@inline()
+def _inverse_moment(weight, p, axis, support, mean):
+    """1 / Σ N (x_node - x̄)² along an axis, in 1/cells².
+
+    The moment, which nearly vanishes where a small box is at a node, counts as ``LEAST_MOMENT`` at the least: a
+    particle that barely reaches beyond one node knows no slope, and would be stiffer than the sound with one.
+    """
+    moment = 0.0
+    for a in range(support):
+        moment += weight[p, axis, a] * (a - mean) ** 2
+    return 1.0 / max(moment, LEAST_MOMENT)
+
+
+@cache
+def gather(dim: int, support: int):
+    """The kernel that takes velocities and their slopes to the particles.
+
+    ``gather(nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L,
+    rate, affine, move, strain, has_affine)`` does, in one pass over the nodes of each particle,
+
+    - if ``move``: x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ;
+    - if ``strain``: L_ij = Σ v_i ∂N/∂x_j, L_θθ = Σ v_r N/r where ``hoop`` has columns, and rate = tr L;
+    - if ``has_affine``: C = Σ N v (x_node - x̄)ᵀ D⁻¹, with the diagonal D = Σ N (x_node - x̄)².
 
     In an axisymmetric scene the radius moves as r ← r (1 + dt D_θθ): the radially weighted average of
     v_r belongs to the centroid of the particle's ring, not to its middle, and near the axis the two differ;
     the hoop rate is exact for the middle, and the axis can never be crossed.
     """
-    n, support = len(position), weight.shape[2]
-    radial = hoop.shape[1] > 0
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1]) * strides[1]
-            v0 = v1 = dv0 = dv1 = hoop_rate = 0.0
-            for a in range(support):
-                w0 = weight[p, 0, a]
-                row = first + a * strides[0]
-                for b in range(support):
-                    w = w0 * weight[p, 1, b]
-                    i = row + b
-                    v0 += w * nodes[i, 1]
-                    v1 += w * nodes[i, 2]
-                    dv0 += w * nodes[i, 3]
-                    dv1 += w * nodes[i, 4]
+    return _gather_2d(support) if dim == 2 else _gather_3d(support)
+
+
+def _gather_2d(support):
+    @kernel()
+    def gather_2d(
+        nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L, rate,
+        affine, move, strain, has_affine,
+    ):  # fmt: skip
+        n = len(position)
+        radial = hoop.shape[1] > 0
+        for chunk in prange(chunk_count(n)):
+            for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+                first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1])
+                v = x = y = ax = ay = h = zero()
+                for a in range(support):
+                    w0 = weight[p, 0, a]
+                    row = (first + a * strides[0]) * NODE
+                    rv = ry = ray = zero()
+                    for b in range(support):
+                        w1 = weight[p, 1, b]
+                        node = load(nodes, row + b * NODE)
+                        rv = plus(rv, w1, node)
+                        ry = plus(ry, gradient[p, 1, b], node)
+                        if has_affine:
+                            ray = plus(ray, b * w1, node)
+                    v = plus(v, w0, rv)
+                    x = plus(x, gradient[p, 0, a], rv)
+                    y = plus(y, w0, ry)
                     if radial:
-                        hoop_rate += hoop[p, a] * weight[p, 1, b] * nodes[i, 1]
-            position[p, 0] += dt * (position[p, 0] * hoop_rate if radial else v0)
-            position[p, 1] += dt * v1
-            velocity[p, 0] = flip * (velocity[p, 0] + dv0) + (1 - flip) * v0
-            velocity[p, 1] = flip * (velocity[p, 1] + dv1) + (1 - flip) * v1
+                        h = plus(h, hoop[p, a], rv)
+                    if has_affine:
+                        ax = plus(ax, a * w0, rv)
+                        ay = plus(ay, w0, ray)
+                if strain:
+                    L[p, 0, 0], L[p, 0, 1] = lane(x, 1), lane(y, 1)
+                    L[p, 1, 0], L[p, 1, 1] = lane(x, 2), lane(y, 2)
+                    L[p, 2, 2] = lane(h, 1)
+                    rate[p] = lane(x, 1) + lane(y, 2) + lane(h, 1)
+                if has_affine:
+                    m0, m1 = centroid(weight, p, 0, support), centroid(weight, p, 1, support)
+                    d0 = _inverse_moment(weight, p, 0, support, m0) / cell_size
+                    d1 = _inverse_moment(weight, p, 1, support, m1) / cell_size
+                    ax, ay = scale(d0, plus(ax, -m0, v)), scale(d1, plus(ay, -m1, v))
+                    affine[p, 0, 0], affine[p, 0, 1] = lane(ax, 1), lane(ay, 1)
+                    affine[p, 1, 0], affine[p, 1, 1] = lane(ax, 2), lane(ay, 2)
+                if move:
+                    v0, v1 = lane(v, 1), lane(v, 2)
+                    position[p, 0] += dt * (position[p, 0] * lane(h, 1) if radial else v0)
+                    position[p, 1] += dt * v1
+                    velocity[p, 0] = flip * (velocity[p, 0] + lane(v, 3)) + (1 - flip) * v0
+                    velocity[p, 1] = flip * (velocity[p, 1] + lane(v, 4)) + (1 - flip) * v1
+
+    return gather_2d
 
 
-@kernel()
-def advance_3d(nodes, strides, lower, base, weight, hoop, dt, flip, position, velocity):
-    """As ``advance_2d``, in three dimensions; ``hoop`` is not used."""
-    n, support = len(position), weight.shape[2]
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            first = (
-                (base[p, 0] - lower[0]) * strides[0]
-                + (base[p, 1] - lower[1]) * strides[1]
-                + (base[p, 2] - lower[2])
-            )
-            v0 = v1 = v2 = dv0 = dv1 = dv2 = 0.0
-            for a in range(support):
-                for b in range(support):
-                    w01 = weight[p, 0, a] * weight[p, 1, b]
-                    row = first + a * strides[0] + b * strides[1]
-                    for c in range(support):
-                        w = w01 * weight[p, 2, c]
-                        i = row + c
-                        v0 += w * nodes[i, 1]
-                        v1 += w * nodes[i, 2]
-                        v2 += w * nodes[i, 3]
-                        dv0 += w * nodes[i, 4]
-                        dv1 += w * nodes[i, 5]
-                        dv2 += w * nodes[i, 6]
-            position[p, 0] += dt * v0
-            position[p, 1] += dt * v1
-            position[p, 2] += dt * v2
-            velocity[p, 0] = flip * (velocity[p, 0] + dv0) + (1 - flip) * v0
-            velocity[p, 1] = flip * (velocity[p, 1] + dv1) + (1 - flip) * v1
-            velocity[p, 2] = flip * (velocity[p, 2] + dv2) + (1 - flip) * v2
+def _gather_3d(support):
+    @kernel()
+    def gather_3d(
+        nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L, rate,
+        affine, move, strain, has_affine,
+    ):  # fmt: skip
+        n = len(position)
+        for chunk in prange(chunk_count(n)):
+            for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+                first = (
+                    (base[p, 0] - lower[0]) * strides[0]
+                    + (base[p, 1] - lower[1]) * strides[1]
+                    + (base[p, 2] - lower[2])
+                )
+                v = x = y = z = ax = ay = az = zero()
+                for a in range(support):
+                    w0 = weight[p, 0, a]
+                    pv = py = pz = pay = paz = zero()
+                    for b in range(support):
+                        w1 = weight[p, 1, b]
+                        row = (first + a * strides[0] + b * strides[1]) * NODE
+                        rv = rz = raz = zero()
+                        for c in range(support):
+                            w2 = weight[p, 2, c]
+                            node = load(nodes, row + c * NODE)
+                            rv = plus(rv, w2, node)
+                            rz = plus(rz, gradient[p, 2, c], node)
+                            if has_affine:
+                                raz = plus(raz, c * w2, node)
+                        pv = plus(pv, w1, rv)
+                        py = plus(py, gradient[p, 1, b], rv)
+                        pz = plus(pz, w1, rz)
+                        if has_affine:
+                            pay = plus(pay, b * w1, rv)
+                            paz = plus(paz, w1, raz)
+                    v = plus(v, w0, pv)
+                    x = plus(x, gradient[p, 0, a], pv)
+                    y = plus(y, w0, py)
+                    z = plus(z, w0, pz)
+                    if has_affine:
+                        ax = plus(ax, a * w0, pv)
+                        ay = plus(ay, w0, pay)
+                        az = plus(az, w0, paz)
+                if strain:
+                    L[p, 0, 0], L[p, 0, 1], L[p, 0, 2] = lane(x, 1), lane(y, 1), lane(z, 1)
+                    L[p, 1, 0], L[p, 1, 1], L[p, 1, 2] = lane(x, 2), lane(y, 2), lane(z, 2)
+                    L[p, 2, 0], L[p, 2, 1], L[p, 2, 2] = lane(x, 3), lane(y, 3), lane(z, 3)
+                    rate[p] = lane(x, 1) + lane(y, 2) + lane(z, 3)
+                if has_affine:
+                    m0 = centroid(weight, p, 0, support)
+                    m1 = centroid(weight, p, 1, support)
+                    m2 = centroid(weight, p, 2, support)
+                    ax = scale(_inverse_moment(weight, p, 0, support, m0) / cell_size, plus(ax, -m0, v))
+                    ay = scale(_inverse_moment(weight, p, 1, support, m1) / cell_size, plus(ay, -m1, v))
+                    az = scale(_inverse_moment(weight, p, 2, support, m2) / cell_size, plus(az, -m2, v))
+                    affine[p, 0, 0], affine[p, 0, 1], affine[p, 0, 2] = lane(ax, 1), lane(ay, 1), lane(az, 1)
+                    affine[p, 1, 0], affine[p, 1, 1], affine[p, 1, 2] = lane(ax, 2), lane(ay, 2), lane(az, 2)
+                    affine[p, 2, 0], affine[p, 2, 1], affine[p, 2, 2] = lane(ax, 3), lane(ay, 3), lane(az, 3)
+                if move:
+                    v0, v1, v2 = lane(v, 1), lane(v, 2), lane(v, 3)
+                    position[p, 0] += dt * v0
+                    position[p, 1] += dt * v1
+                    position[p, 2] += dt * v2
+                    velocity[p, 0] = flip * (velocity[p, 0] + lane(v, 4)) + (1 - flip) * v0
+                    velocity[p, 1] = flip * (velocity[p, 1] + lane(v, 5)) + (1 - flip) * v1
+                    velocity[p, 2] = flip * (velocity[p, 2] + lane(v, 6)) + (1 - flip) * v2
+
+    return gather_3d
 
 
-@kernel()
-def gradient_2d(nodes, strides, lower, base, weight, gradient, hoop, L):
-    """L_ij = Σ v_i ∂N/∂x_j, and L_θθ = Σ v_r N/r where ``hoop`` has columns; the rest stays as it is."""
-    n, support = len(L), weight.shape[2]
-    radial = hoop.shape[1] > 0
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1]) * strides[1]
-            l00 = l01 = l10 = l11 = l22 = 0.0
-            for a in range(support):
-                w0, g0 = weight[p, 0, a], gradient[p, 0, a]
-                row = first + a * strides[0]
-                # Contract along the second axis first: the sums over b serve every term of the row.
-                v0 = v1 = u0 = u1 = 0.0
-                for b in range(support):
-                    i = row + b
-                    v0 += weight[p, 1, b] * nodes[i, 1]
-                    v1 += weight[p, 1, b] * nodes[i, 2]
-                    u0 += gradient[p, 1, b] * nodes[i, 1]
-                    u1 += gradient[p, 1, b] * nodes[i, 2]
-                l00 += g0 * v0
-                l10 += g0 * v1
-                l01 += w0 * u0
-                l11 += w0 * u1
-                if radial:
-                    l22 += hoop[p, a] * v0
-            L[p, 0, 0], L[p, 0, 1], L[p, 1, 0], L[p, 1, 1] = l00, l01, l10, l11
-            if radial:
-                L[p, 2, 2] = l22
+@cache
+def gather_scalar(dim: int, support: int):
+    """The kernel that takes Σ N value of a nodal field to the particles, into ``out (n,)``.
 
-
-@kernel()
-def gradient_3d(nodes, strides, lower, base, weight, gradient, hoop, L):
-    """As ``gradient_2d``, in three dimensions; ``hoop`` is not used."""
-    n, support = len(L), weight.shape[2]
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            first = (
-                (base[p, 0] - lower[0]) * strides[0]
-                + (base[p, 1] - lower[1]) * strides[1]
-                + (base[p, 2] - lower[2])
-            )
-            l00 = l01 = l02 = l10 = l11 = l12 = l20 = l21 = l22 = 0.0
-            for a in range(support):
-                w0, g0 = weight[p, 0, a], gradient[p, 0, a]
-                # Contract axis by axis, innermost first: v, ∂v/∂y, ∂v/∂z along this plane of nodes.
-                v0 = v1 = v2 = y0 = y1 = y2 = z0 = z1 = z2 = 0.0
-                for b in range(support):
-                    w1, g1 = weight[p, 1, b], gradient[p, 1, b]
-                    row = first + a * strides[0] + b * strides[1]
-                    r0 = r1 = r2 = s0 = s1 = s2 = 0.0
-                    for c in range(support):
-                        i = row + c
-                        w2, g2 = weight[p, 2, c], gradient[p, 2, c]
-                        r0 += w2 * nodes[i, 1]
-                        r1 += w2 * nodes[i, 2]
-                        r2 += w2 * nodes[i, 3]
-                        s0 += g2 * nodes[i, 1]
-                        s1 += g2 * nodes[i, 2]
-                        s2 += g2 * nodes[i, 3]
-                    v0 += w1 * r0
-                    v1 += w1 * r1
-                    v2 += w1 * r2
-                    y0 += g1 * r0
-                    y1 += g1 * r1
-                    y2 += g1 * r2
-                    z0 += w1 * s0
-                    z1 += w1 * s1
-                    z2 += w1 * s2
-                l00 += g0 * v0
-                l10 += g0 * v1
-                l20 += g0 * v2
-                l01 += w0 * y0
-                l11 += w0 * y1
-                l21 += w0 * y2
-                l02 += w0 * z0
-                l12 += w0 * z1
-                l22 += w0 * z2
-            L[p, 0, 0], L[p, 0, 1], L[p, 0, 2] = l00, l01, l02
-            L[p, 1, 0], L[p, 1, 1], L[p, 1, 2] = l10, l11, l12
-            L[p, 2, 0], L[p, 2, 1], L[p, 2, 2] = l20, l21, l22
-
-
-@kernel()
-def affine_slopes(weight, cell_size, slope):
-    """1-D tables that give the affine part of a nodal field: N (x_node - x̄) / D, D = Σ N (x_node - x̄)², 1/m.
-
-    D, which nearly vanishes where a small box is at a node, counts as ``LEAST_MOMENT`` at the least: a
-    particle that barely reaches beyond one node knows no slope, and would be stiffer than the sound with one.
+    Rows are read as whole vectors, so that ``field`` must have ``LANES`` more doubles behind it than nodes.
     """
-    n, dim, support = weight.shape
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            for d in range(dim):
-                mean = moment = 0.0
-                for a in range(support):
-                    mean += a * weight[p, d, a]
-                for a in range(support):
-                    moment += weight[p, d, a] * (a - mean) ** 2
-                scale = 1.0 / (max(moment, LEAST_MOMENT) * cell_size)
-                for a in range(support):
-                    slope[p, d, a] = weight[p, d, a] * (a - mean) * scale
 
+    @kernel()
+    def gather_scalar(field, strides, lower, base, weight, out):
+        n, last = len(base), dim - 1
+        planes = support if dim == 3 else 1
+        for chunk in prange(chunk_count(n)):
+            for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+                first = 0
+                for d in range(dim):
+                    first += (base[p, d] - lower[d]) * strides[d]
+                total = zero()
+                for a in range(support):
+                    for b in range(planes):
+                        w = weight[p, 0, a] * (weight[p, 1, b] if dim == 3 else 1.0)
+                        total = plus(total, w, load(field, first + a * strides[0] + b * strides[1]))
+                value = weight[p, last, 0] * lane(total, 0) + weight[p, last, 1] * lane(total, 1)
+                if support > 2:
+                    value += weight[p, last, 2] * lane(total, 2)
+                if support > 3:
+                    value += weight[p, last, 3] * lane(total, 3)
+                out[p] = value
 
-@kernel()
-def gather_scalar(field, strides, lower, base, weight, out):
-    """Σ N value of a nodal field at the particles, in any dimension."""
-    n, dim, support = weight.shape
-    last = support if dim == 3 else 1
-    for chunk in prange(chunk_count(n)):
-        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            first = 0
-            for d in range(dim):
-                first += (base[p, d] - lower[d]) * strides[d]
-            value = 0.0
-            for a in range(support):
-                for b in range(support):
-                    w01 = weight[p, 0, a] * weight[p, 1, b]
-                    row = first + a * strides[0] + b * strides[1]
-                    for c in range(last):
-                        value += (w01 * weight[p, 2, c] if dim == 3 else w01) * field[row + c]
-            out[p] = value
+    return gather_scalar

@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 
-from .compile import kernel
+from .compile import function, kernel
 from .scatter import CONTACT, NODE
 
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
@@ -34,7 +34,7 @@ def clear(nodes):
             nodes[i, q] = 0.0
 
 
-@njit(cache=True)
+@function()
 def _transfer(nodes, shape, strides, axis, ghost, image, contact, first, last, sign, folding):
     """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
 
@@ -57,7 +57,7 @@ def _transfer(nodes, shape, strides, axis, ghost, image, contact, first, last, s
                     behind[q] = sign[q] * before[q]
 
 
-@njit(cache=True)
+@function()
 def _parity(face, axis, dim, vectors):
     """Sign of every slot under reflection at a face: scalars are even, what the face reverses is odd."""
     sign = np.ones(NODE)
@@ -68,7 +68,7 @@ def _parity(face, axis, dim, vectors):
     return sign
 
 
-@njit(cache=True)
+@function()
 def _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, folding):
     for step in range(dim):
         a = step if folding else dim - 1 - step  # filling undoes folding in the opposite order
@@ -87,7 +87,7 @@ def _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, fol
                 _transfer(nodes, shape, strides, a, ghost, image, contact, first, last, sign, folding)
 
 
-@njit(cache=True)
+@function()
 def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     """Add what lies on ghost nodes to their images, slots first..last-1, and clear the ghosts.
 
@@ -96,13 +96,13 @@ def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, True)
 
 
-@njit(cache=True)
+@function()
 def fill(nodes, shape, strides, dim, faces, walls, first, last, vectors):
     """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
     _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, False)
 
 
-@njit(cache=True)
+@function()
 def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
     """Boundary conditions on the velocity and, once ``solved``, on its change."""
     for a in range(dim):
@@ -125,7 +125,7 @@ def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
                                 node[1 + dim + d] = 0.0
 
 
-@njit(cache=True)
+@function()
 def _touch(node, dim, a, inward, coefficient, solved):
     """Coulomb's law at a node of a wall that pushes and does not pull.
 
@@ -156,6 +156,20 @@ def _touch(node, dim, a, inward, coefficient, solved):
         if d != a:
             node[1 + dim + d] -= lost * node[1 + d]
             node[1 + d] -= lost * node[1 + d]
+
+
+@kernel()
+def divide_pairs(pairs, average, shape, strides, dim, faces, walls):
+    """Σ w f / Σ w at every node, zero where nothing is, with what lies on ghosts folded in and filled back.
+
+    Leaves ``pairs`` empty, for the next average.
+    """
+    fold(pairs, shape, strides, dim, faces, walls, 0, 2, False)
+    for i in prange(len(pairs)):
+        weight = pairs[i, 0]
+        average[i, 0] = pairs[i, 1] / weight if weight > 0.0 else 0.0
+        pairs[i, 0] = pairs[i, 1] = 0.0
+    fill(average, shape, strides, dim, faces, walls, 0, 1, False)
 
 
 @kernel()

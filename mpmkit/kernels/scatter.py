@@ -1,168 +1,199 @@
 """Particles to nodes (P2G).
 
-Particles are kept in slabs of cells along the first axis. Slabs of one colour touch no common node, so
-that each colour is scattered in parallel without a race, in an order that does not depend on the number of
-threads. A node is a record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the sum
-of 2^axis over the axes along which it touches a Coulomb wall.
+Particles are kept in blocks of cells. Blocks of one colour touch no common node, so that each colour is
+scattered in parallel without a race, in an order that does not depend on the number of threads. A node is a
+record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the sum of 2^axis over the axes
+along which it touches a Coulomb wall. A particle adds one vector to each record, which is built up axis by
+axis: what does not depend on the innermost axis is multiplied out before it.
 """
 
 from __future__ import annotations
 
+from functools import cache
+
 from numba import prange
 
 from .compile import inline, kernel
+from .vectors import LANES, load, pack, plus, scale, store, zero
 
-NODE = 8
-"""Doubles in a node's record: one cache line."""
+NODE = LANES
+"""Doubles in a node's record: one cache line, one vector."""
 CONTACT = NODE - 1
+PAIR = 2
+"""Doubles in a node's record of an average: measure and measure × value."""
+LARGEST_SUPPORT = LANES // PAIR
+"""Nodes along an axis that a shape function may touch: a row of pairs must fit into a vector."""
 
 
 @inline()
-def _mean(weight, p, axis):
+def centroid(weight, p, axis, support):
     """Centroid of a particle's weights along an axis, in cells from its first node."""
     mean = 0.0
-    for a in range(1, weight.shape[2]):
+    for a in range(support):
         mean += a * weight[p, axis, a]
     return mean
 
 
-@kernel()
-def scatter_2d(
-    nodes, strides, lower, slabs, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-    pressure, gravity, cell_size, momentum, forces,
-):  # fmt: skip
-    """Add mass and momentum (if ``momentum``) and the force (if ``forces``) of all particles to the nodes.
+@cache
+def scatter(dim: int, support: int):
+    """The kernel that maps mass, momentum and force to the nodes, for a shape function of that support.
+
+    ``scatter(nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume,
+    stress, pressure, gravity, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``) and the
+    force (if ``forces``) of all particles.
 
     m v = Σ m N (v + C (x_node - x̄)), with the affine part C, 1/s, where ``affine`` has columns, about the
     centroid x̄ = Σ N x_node, so that it adds no momentum.
     f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
     ``hoop`` has columns. ``stress`` holds the extra stress; the Cauchy stress is that minus ``pressure``.
-    ``slabs[g, s]`` is the first particle of slab s in group g.
+    ``tasks[g, colour, t]`` is the first particle of task t of a colour in group g.
     """
-    support = weight.shape[2]
-    radial = hoop.shape[1] > 0
-    has_affine = momentum and affine.shape[1] > 0
-    count = slabs.shape[1] - 1
-    for colour in range(2):
-        for k in prange((count - colour + 1) // 2):
-            s = 2 * k + colour
-            for g in range(slabs.shape[0]):
-                for p in range(slabs[g, s], slabs[g, s + 1]):
-                    m = mass[p]
-                    v0, v1 = velocity[p, 0], velocity[p, 1]
-                    V = volume[p]
-                    s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
-                    s22, s01 = V * (stress[p, 2] - pressure[p]), V * stress[p, 5]
-                    first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1]) * strides[1]
-                    c00 = c01 = c10 = c11 = 0.0
-                    if has_affine:  # v becomes what the affine field is at node (0, 0) of the particle
-                        c00, c01 = affine[p, 0, 0] * cell_size, affine[p, 0, 1] * cell_size
-                        c10, c11 = affine[p, 1, 0] * cell_size, affine[p, 1, 1] * cell_size
-                        mean0, mean1 = _mean(weight, p, 0), _mean(weight, p, 1)
-                        v0 -= c00 * mean0 + c01 * mean1
-                        v1 -= c10 * mean0 + c11 * mean1
-                    for a in range(support):
-                        w0, g0 = weight[p, 0, a], gradient[p, 0, a]
-                        h0 = hoop[p, a] if radial else 0.0
-                        row = first + a * strides[0]
-                        for b in range(support):
-                            w1 = weight[p, 1, b]
-                            wm = m * w0 * w1
-                            i = row + b
-                            if momentum:
-                                nodes[i, 0] += wm
-                                nodes[i, 1] += wm * (v0 + c00 * a + c01 * b)
-                                nodes[i, 2] += wm * (v1 + c10 * a + c11 * b)
-                            if forces:
-                                d0, d1 = g0 * w1, w0 * gradient[p, 1, b]
-                                nodes[i, 3] += wm * gravity[0] - s00 * d0 - s01 * d1 - s22 * h0 * w1
-                                nodes[i, 4] += wm * gravity[1] - s01 * d0 - s11 * d1
+    return _scatter_2d(support) if dim == 2 else _scatter_3d(support)
 
 
-@kernel()
-def scatter_3d(
-    nodes, strides, lower, slabs, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-    pressure, gravity, cell_size, momentum, forces,
-):  # fmt: skip
-    """As ``scatter_2d``, in three dimensions; ``hoop`` is not used."""
-    support = weight.shape[2]
-    has_affine = momentum and affine.shape[1] > 0
-    count = slabs.shape[1] - 1
-    for colour in range(2):
-        for k in prange((count - colour + 1) // 2):
-            s = 2 * k + colour
-            for g in range(slabs.shape[0]):
-                for p in range(slabs[g, s], slabs[g, s + 1]):
-                    m = mass[p]
-                    v0, v1, v2 = velocity[p, 0], velocity[p, 1], velocity[p, 2]
-                    V = volume[p]
-                    s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
-                    s22 = V * (stress[p, 2] - pressure[p])
-                    s12, s02, s01 = V * stress[p, 3], V * stress[p, 4], V * stress[p, 5]
-                    first = (
-                        (base[p, 0] - lower[0]) * strides[0]
-                        + (base[p, 1] - lower[1]) * strides[1]
-                        + (base[p, 2] - lower[2])
-                    )
-                    c00 = c01 = c02 = c10 = c11 = c12 = c20 = c21 = c22 = 0.0
-                    if has_affine:
-                        c00, c10, c20 = affine[p, 0, 0], affine[p, 1, 0], affine[p, 2, 0]
-                        c01, c11, c21 = affine[p, 0, 1], affine[p, 1, 1], affine[p, 2, 1]
-                        c02, c12, c22 = affine[p, 0, 2], affine[p, 1, 2], affine[p, 2, 2]
-                        c00, c01, c02 = c00 * cell_size, c01 * cell_size, c02 * cell_size
-                        c10, c11, c12 = c10 * cell_size, c11 * cell_size, c12 * cell_size
-                        c20, c21, c22 = c20 * cell_size, c21 * cell_size, c22 * cell_size
-                        mean0, mean1, mean2 = _mean(weight, p, 0), _mean(weight, p, 1), _mean(weight, p, 2)
-                        v0 -= c00 * mean0 + c01 * mean1 + c02 * mean2
-                        v1 -= c10 * mean0 + c11 * mean1 + c12 * mean2
-                        v2 -= c20 * mean0 + c21 * mean1 + c22 * mean2
-                    for a in range(support):
-                        w0, g0 = weight[p, 0, a], gradient[p, 0, a]
-                        for b in range(support):
-                            u0, u1, u2 = (
-                                v0 + c00 * a + c01 * b,
-                                v1 + c10 * a + c11 * b,
-                                v2 + c20 * a + c21 * b,
-                            )
-                            w01 = w0 * weight[p, 1, b]
-                            g0w1 = g0 * weight[p, 1, b]
-                            w0g1 = w0 * gradient[p, 1, b]
-                            row = first + a * strides[0] + b * strides[1]
-                            for c in range(support):
-                                w2 = weight[p, 2, c]
-                                wm = m * w01 * w2
-                                i = row + c
-                                if momentum:
-                                    nodes[i, 0] += wm
-                                    nodes[i, 1] += wm * (u0 + c02 * c)
-                                    nodes[i, 2] += wm * (u1 + c12 * c)
-                                    nodes[i, 3] += wm * (u2 + c22 * c)
-                                if forces:
-                                    d0, d1, d2 = g0w1 * w2, w0g1 * w2, w01 * gradient[p, 2, c]
-                                    nodes[i, 4] += wm * gravity[0] - s00 * d0 - s01 * d1 - s02 * d2
-                                    nodes[i, 5] += wm * gravity[1] - s01 * d0 - s11 * d1 - s12 * d2
-                                    nodes[i, 6] += wm * gravity[2] - s02 * d0 - s12 * d1 - s22 * d2
+def _scatter_2d(support):
+    @kernel()
+    def scatter_2d(
+        nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
+        pressure, gravity, cell_size, momentum, forces,
+    ):  # fmt: skip
+        radial = hoop.shape[1] > 0
+        has_affine = momentum and affine.shape[1] > 0
+        groups = tasks.shape[0]
+        for colour in range(tasks.shape[1]):
+            for task in prange(tasks.shape[2] - 1):
+                for g in range(groups):
+                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
+                        first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1])
+                        m, V = mass[p] * momentum, -volume[p] * forces
+                        weighs = mass[p] * forces
+                        s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
+                        s22, s01 = V * (stress[p, 2] - pressure[p]), V * stress[p, 5]
+                        # What the particle gives, by the factor it comes with: N, ∂N/∂x, ∂N/∂y, N/r.
+                        M = pack(
+                            m, m * velocity[p, 0], m * velocity[p, 1],
+                            weighs * gravity[0], weighs * gravity[1], 0.0, 0.0, 0.0,
+                        )  # fmt: skip
+                        S0 = pack(0.0, 0.0, 0.0, s00, s01, 0.0, 0.0, 0.0)
+                        S1 = pack(0.0, 0.0, 0.0, s01, s11, 0.0, 0.0, 0.0)
+                        Sh = pack(0.0, 0.0, 0.0, s22, 0.0, 0.0, 0.0, 0.0)
+                        C0 = C1 = zero()
+                        if has_affine:  # M becomes what the affine field is at node (0, 0) of the particle
+                            h = m * cell_size
+                            C0 = pack(0.0, h * affine[p, 0, 0], h * affine[p, 1, 0], 0.0, 0.0, 0.0, 0.0, 0.0)
+                            C1 = pack(0.0, h * affine[p, 0, 1], h * affine[p, 1, 1], 0.0, 0.0, 0.0, 0.0, 0.0)
+                            M = plus(M, -centroid(weight, p, 0, support), C0)
+                            M = plus(M, -centroid(weight, p, 1, support), C1)
+                        for a in range(support):
+                            w0, g0 = weight[p, 0, a], gradient[p, 0, a]
+                            X = plus(scale(w0, plus(M, float(a), C0)), g0, S0)
+                            if radial:
+                                X = plus(X, hoop[p, a], Sh)
+                            Y, Z = scale(w0, S1), scale(w0, C1)
+                            row = (first + a * strides[0]) * NODE
+                            for b in range(support):
+                                w1 = weight[p, 1, b]
+                                node = load(nodes, row + b * NODE)
+                                node = plus(node, w1, X)
+                                node = plus(node, gradient[p, 1, b], Y)
+                                if has_affine:
+                                    node = plus(node, b * w1, Z)
+                                store(nodes, row + b * NODE, node)
+
+    return scatter_2d
 
 
-@kernel()
-def scatter_scalar(field, strides, lower, slabs, base, weight, measure, values):
-    """Σ measure N and Σ measure N value of a particle field into ``field (nodes, 2)``, in any dimension."""
-    dim, support = weight.shape[1], weight.shape[2]
-    last = support if dim == 3 else 1
-    count = slabs.shape[1] - 1
-    for colour in range(2):
-        for k in prange((count - colour + 1) // 2):
-            s = 2 * k + colour
-            for g in range(slabs.shape[0]):
-                for p in range(slabs[g, s], slabs[g, s + 1]):
-                    first = 0
-                    for d in range(dim):
-                        first += (base[p, d] - lower[d]) * strides[d]
-                    for a in range(support):
-                        for b in range(support):
-                            w01 = measure[p] * weight[p, 0, a] * weight[p, 1, b]
-                            row = first + a * strides[0] + b * strides[1]
-                            for c in range(last):
-                                w = w01 * weight[p, 2, c] if dim == 3 else w01
-                                field[row + c, 0] += w
-                                field[row + c, 1] += w * values[p]
+def _scatter_3d(support):
+    @kernel()
+    def scatter_3d(
+        nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
+        pressure, gravity, cell_size, momentum, forces,
+    ):  # fmt: skip
+        has_affine = momentum and affine.shape[1] > 0
+        groups = tasks.shape[0]
+        for colour in range(tasks.shape[1]):
+            for task in prange(tasks.shape[2] - 1):
+                for g in range(groups):
+                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
+                        first = (
+                            (base[p, 0] - lower[0]) * strides[0]
+                            + (base[p, 1] - lower[1]) * strides[1]
+                            + (base[p, 2] - lower[2])
+                        )
+                        m, V = mass[p] * momentum, -volume[p] * forces
+                        weighs = mass[p] * forces
+                        s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
+                        s22 = V * (stress[p, 2] - pressure[p])
+                        s12, s02, s01 = V * stress[p, 3], V * stress[p, 4], V * stress[p, 5]
+                        # What the particle gives, by the factor it comes with: N, ∂N/∂x, ∂N/∂y, ∂N/∂z.
+                        M = pack(
+                            m, m * velocity[p, 0], m * velocity[p, 1], m * velocity[p, 2],
+                            weighs * gravity[0], weighs * gravity[1], weighs * gravity[2], 0.0,
+                        )  # fmt: skip
+                        S0 = pack(0.0, 0.0, 0.0, 0.0, s00, s01, s02, 0.0)
+                        S1 = pack(0.0, 0.0, 0.0, 0.0, s01, s11, s12, 0.0)
+                        S2 = pack(0.0, 0.0, 0.0, 0.0, s02, s12, s22, 0.0)
+                        C0 = C1 = C2 = zero()
+                        if has_affine:  # M becomes what the affine field is at the particle's first node
+                            h = m * cell_size
+                            c00, c10, c20 = h * affine[p, 0, 0], h * affine[p, 1, 0], h * affine[p, 2, 0]
+                            c01, c11, c21 = h * affine[p, 0, 1], h * affine[p, 1, 1], h * affine[p, 2, 1]
+                            c02, c12, c22 = h * affine[p, 0, 2], h * affine[p, 1, 2], h * affine[p, 2, 2]
+                            C0 = pack(0.0, c00, c10, c20, 0.0, 0.0, 0.0, 0.0)
+                            C1 = pack(0.0, c01, c11, c21, 0.0, 0.0, 0.0, 0.0)
+                            C2 = pack(0.0, c02, c12, c22, 0.0, 0.0, 0.0, 0.0)
+                            M = plus(M, -centroid(weight, p, 0, support), C0)
+                            M = plus(M, -centroid(weight, p, 1, support), C1)
+                            M = plus(M, -centroid(weight, p, 2, support), C2)
+                        for a in range(support):
+                            w0 = weight[p, 0, a]
+                            MS = plus(scale(w0, plus(M, float(a), C0)), gradient[p, 0, a], S0)
+                            wS1, wS2, wC1, wC2 = scale(w0, S1), scale(w0, S2), scale(w0, C1), scale(w0, C2)
+                            for b in range(support):
+                                w1 = weight[p, 1, b]
+                                X = plus(scale(w1, plus(MS, float(b), wC1)), gradient[p, 1, b], wS1)
+                                Y, Z = scale(w1, wS2), scale(w1, wC2)
+                                row = (first + a * strides[0] + b * strides[1]) * NODE
+                                for c in range(support):
+                                    w2 = weight[p, 2, c]
+                                    node = load(nodes, row + c * NODE)
+                                    node = plus(node, w2, X)
+                                    node = plus(node, gradient[p, 2, c], Y)
+                                    if has_affine:
+                                        node = plus(node, c * w2, Z)
+                                    store(nodes, row + c * NODE, node)
+
+    return scatter_3d
+
+
+@cache
+def scatter_pairs(dim: int, support: int):
+    """The kernel that adds Σ measure N and Σ measure N value of a particle field to ``pairs (nodes, 2)``.
+
+    A row of pairs is one vector, whose last lanes add nothing to the nodes behind the particle's; the window
+    has a node more along its last axis for them, and blocks are wide enough.
+    """
+
+    @kernel()
+    def scatter_pairs(pairs, strides, lower, tasks, base, weight, measure, values):
+        groups, last = tasks.shape[0], dim - 1
+        planes = support if dim == 3 else 1
+        for colour in range(tasks.shape[1]):
+            for task in prange(tasks.shape[2] - 1):
+                for g in range(groups):
+                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
+                        first = 0
+                        for d in range(dim):
+                            first += (base[p, d] - lower[d]) * strides[d]
+                        m, f = measure[p], measure[p] * values[p]
+                        w0, w1 = weight[p, last, 0], weight[p, last, 1]
+                        w2 = weight[p, last, 2] if support > 2 else 0.0
+                        w3 = weight[p, last, 3] if support > 3 else 0.0
+                        row = pack(m * w0, f * w0, m * w1, f * w1, m * w2, f * w2, m * w3, f * w3)
+                        for a in range(support):
+                            for b in range(planes):
+                                w = weight[p, 0, a] * (weight[p, 1, b] if dim == 3 else 1.0)
+                                at = PAIR * (first + a * strides[0] + b * strides[1])
+                                store(pairs, at, plus(load(pairs, at), w, row))
+
+    return scatter_pairs

@@ -49,24 +49,6 @@ def viscous_stress(L, viscosity, stress):
 
 
 @kernel()
-def trace(L, out):
-    """Volumetric rate tr(L), 1/s."""
-    n = len(L)
-    for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            out[p] = L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]
-
-
-@kernel()
-def stretch_volume(rate, dt, volume_ratio):
-    """J ← J (1 + dt tr L)."""
-    n = len(rate)
-    for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            volume_ratio[p] *= 1 + dt * rate[p]
-
-
-@kernel()
 def deform(L, dt, F):
     """F ← (I + dt L) F."""
     n = len(L)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..case.model import Case, Friction
 from ..kernels import nodes as node_kernels
-from ..kernels.scatter import CONTACT, NODE
+from ..kernels.scatter import CONTACT, NODE, PAIR
+from ..kernels.vectors import LANES
 
 FACE_CODES = {
     "open": node_kernels.OPEN,
@@ -83,7 +84,13 @@ class Window:
     strides: tuple[int, int, int] = field(init=False)
     walls: np.ndarray = field(init=False)
     nodes: np.ndarray = field(init=False)
-    _store: np.ndarray = field(init=False, default_factory=lambda: np.empty((0, NODE)))
+    """Records of ``NODE`` doubles, one a node."""
+    pairs: np.ndarray = field(init=False)
+    """(nodes, 2) the sums of an average; zero in between"""
+    average: np.ndarray = field(init=False)
+    """(nodes, 1) and the average itself"""
+    _capacity: int = field(init=False, default=0)
+    _stores: list[np.ndarray] = field(init=False)
 
     def reach(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """First and last node along each axis that particles in these cells can touch."""
@@ -101,15 +108,21 @@ class Window:
         contacts = self._contacts()
         low, high = self.reach(lowest_cell, highest_cell)
         # The image of a ghost lies one node inside the face, so the window that has the one has the other.
-        size = [int(n) for n in high - low + 1] + [1] * (3 - grid.dim)
+        size = [int(n) for n in high - low + 1]
+        size[-1] += 1  # rows of pairs reach one node beyond the last that a particle touches
+        size += [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
         self.shape = (size[0], size[1], size[2])
         self.strides = (size[1] * size[2], size[2], 1)
         self.walls = np.stack([-low, grid.cells - low], axis=1).astype(np.int64)
         count = size[0] * size[1] * size[2]
-        if count > len(self._store):
-            self._store = np.zeros((count + count // 4, NODE))
-        self.nodes = self._store[:count]
+        if count > self._capacity:
+            self._capacity = count + count // 4
+            self._stores = [_aligned(self._capacity * width + LANES) for width in (NODE, PAIR, 1)]
+        self.nodes, self.pairs, self.average = (
+            store[: count * width].reshape(count, width)
+            for store, width in zip(self._stores, (NODE, PAIR, 1), strict=True)
+        )
         self.nodes[:, CONTACT] = 0.0
         if contacts is not None:
             self._restore_contacts(*contacts)
@@ -127,3 +140,11 @@ class Window:
             new = self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim])
             common = [tuple(map(slice, low - start, high - start)) for start in (lower, self.lower)]
             new[common[1]] = contacts[common[0]]
+
+
+def _aligned(size: int) -> np.ndarray:
+    """Zeros that begin with a cache line, so that a node's record is one line and not parts of two."""
+    line = 8 * LANES
+    store = np.zeros(size + LANES)
+    begin = -store.ctypes.data % line // 8
+    return store[begin : begin + size]

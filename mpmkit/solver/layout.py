@@ -1,7 +1,7 @@
-"""The order in which particles are stored: group by group, slab by slab of cells, cell by cell.
+"""The order in which particles are stored: group by group, and in each as ``kernels.sort`` has it.
 
-Slabs are what P2G runs over in parallel (see ``kernels.scatter``). They stay valid while no particle drifts
-more than one cell out of its own, so that sorting is rare and costs nothing in between.
+Blocks of cells are what P2G runs over in parallel. They stay valid while no particle drifts more than one
+cell out of its own, so that sorting is rare and costs nothing in between.
 """
 
 from __future__ import annotations
@@ -9,17 +9,16 @@ from __future__ import annotations
 import numpy as np
 import psutil
 
-from ..kernels.compile import CHUNK
+from ..kernels import sort
 from ..kernels.locate import LOST, STRAYED, locate, wrap
 from ..kernels.scatter import NODE
 from .grid import Grid, Window
 from .particles import Particles
 
-SLAB_WIDTH = 5
-"""Cells in a slab along the first axis. A particle that has drifted a cell out of its slab touches nodes
-from 2 below to 2 above the slab's cells and one more; with 5 cells two slabs of one colour never meet."""
-DRIFT = 2
-"""Cells that a particle may drift out of the box of the last sort, along the axes that have no slabs."""
+DRIFT = 1
+"""Cells that a particle may drift out of the box of the last sort."""
+TASKS = 64
+"""Pieces of about equal load into which the blocks of a colour are cut, whatever the number of threads."""
 
 
 class Scattered(Exception):
@@ -41,58 +40,78 @@ class Layout:
         self.grid = grid
         self.particles = particles
         self.window = window
-        self.slabs = np.zeros((len(particles.groups), 2), dtype=np.int64)
-        self.first_slab = 0
+        self.tasks = np.zeros((len(particles.groups), 1 << grid.dim, TASKS + 1), dtype=np.int64)
         self.sorts = 0
         self._low = np.zeros(grid.dim, dtype=np.int64)
         self._high = np.zeros(grid.dim, dtype=np.int64)
-        self._verdicts = np.empty((len(particles) // CHUNK + 1, 2), dtype=np.int64)
+        self._block_first = np.zeros((len(particles.groups), 1), dtype=np.int64)
+        self._block_cell = np.zeros((0, grid.dim), dtype=np.int64)
+        self._verdicts = np.zeros((0, 2), dtype=np.int64)
         self._periodic = [a for a in range(grid.dim) if grid.periodic[a]]
 
-    def refresh(self) -> int | None:
-        """Sort and move the window if a particle has strayed. Returns a particle that is lost, if any is."""
+    def refresh(self, cells: np.ndarray, scratch: np.ndarray) -> int | None:
+        """Sort and move the window if a particle has strayed. Returns a particle that is lost, if any is.
+
+        Args:
+            cells: ``(n, dim)`` integers of 32 bits, for the particles' cells in a sort.
+            scratch: doubles, as many as the widest array of the particles has.
+        """
         position = self.particles.position
         for axis in self._periodic:
             wrap(position, axis, self.grid.extent[axis])
         if self.sorts == 0:
-            return self._sort()
+            return self._sort(cells, scratch)
         verdict, who = locate(
-            position, self.particles.half_size, self.grid.extent, 1 / self.grid.cell_size, self.slabs,
-            SLAB_WIDTH, self.first_slab, self._low, self._high, self._verdicts,
+            position, self.particles.half_size, self.grid.extent, 1 / self.grid.cell_size, self._block_first,
+            self._block_cell, self._low, self._high, self._verdicts,
         )  # fmt: skip
         if verdict == LOST:
             return int(who)
         if verdict == STRAYED:
-            return self._sort()
+            return self._sort(cells, scratch)
         return None
 
-    def _sort(self) -> int | None:
+    def _sort(self, cell: np.ndarray, scratch: np.ndarray) -> int | None:
         particles, grid = self.particles, self.grid
         inside = np.all((particles.position >= 0) & (particles.position <= grid.extent), axis=1)
         if not inside.all():
             return int(np.argmin(inside))
-        cell = (particles.position * (1 / grid.cell_size)).astype(np.int64)
-        low, high = cell.min(axis=0), cell.max(axis=0)
+        n, dim = particles.position.shape
+        sort.find_cells(particles.position, 1 / grid.cell_size, cell)
+        low, high = cell.min(axis=0).astype(np.int64), cell.max(axis=0).astype(np.int64)
         self._low, self._high = low - DRIFT, high + DRIFT
         self._require_memory(cell)
         self.window.cover(self._low, self._high)
-        slab = cell[:, 0] // SLAB_WIDTH
-        self.first_slab = int(slab.min())
-        count = int(slab.max()) - self.first_slab + 1
-        key = np.zeros(len(particles), dtype=np.int64)
+
+        blocks = (high - low) // sort.BLOCK_WIDTH + 1
+        count = int(np.prod(blocks))
+        index = np.empty(count, dtype=np.int64)
+        self._block_cell = np.empty((count, dim), dtype=np.int64)
+        first_of_colour = sort.number_blocks(blocks, index, self._block_cell)
+        self._block_cell += low
+        key = np.empty(n, dtype=np.int64)
+        sort.find_keys(cell, low, blocks, index, key)
+        order = np.empty(n, dtype=np.int64)
+        first = np.empty(count * sort.BLOCK_WIDTH**dim + 1, dtype=np.int64)
+        self._block_first = np.empty((len(particles.groups), count + 1), dtype=np.int64)
         for g, group in enumerate(particles.groups):
-            key[group.part] = g
-        for a in range(grid.dim):
-            key = key * (int(high[a] - low[a]) + 1) + (cell[:, a] - low[a])
-        order = np.argsort(key, kind="stable")
-        particles.reorder(order)
-        slab = slab[order] - self.first_slab
-        self.slabs = np.empty((len(particles.groups), count + 1), dtype=np.int64)
-        for g, group in enumerate(particles.groups):
-            edges = np.searchsorted(slab[group.part], np.arange(count + 1))
-            self.slabs[g] = group.part.start + edges
+            sort.counting_sort(key, group.part.start, group.part.stop, first, order)
+            self._block_first[g] = first[:: sort.BLOCK_WIDTH**dim]
+        particles.reorder(order, scratch)
+        self._verdicts = np.empty((count, 2), dtype=np.int64)
+        self._share_out(first_of_colour)
         self.sorts += 1
         return None
+
+    def _share_out(self, first_of_colour: np.ndarray) -> None:
+        """Cut the blocks of every colour into tasks of about equal load, all groups together."""
+        load = (self._block_first - self._block_first[:, :1]).sum(axis=0)
+        self.tasks = np.empty((len(self.particles.groups), len(first_of_colour) - 1, TASKS + 1), np.int64)
+        for colour, (begin, end) in enumerate(zip(first_of_colour, first_of_colour[1:], strict=False)):
+            wanted = np.linspace(load[begin], load[end], TASKS + 1)
+            cuts = begin + np.searchsorted(load[begin : end + 1], wanted)
+            cuts[0], cuts[-1] = begin, end
+            self.tasks[:, colour] = self._block_first[:, cuts]
 
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""

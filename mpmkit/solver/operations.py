@@ -8,11 +8,16 @@ import numpy as np
 
 from ..case.model import Scheme
 from ..contracts.operations import Measure
-from ..kernels import domains, gather, nodes, scatter, tensors
+from ..kernels import domains, nodes, tensors, volumes
+from ..kernels.gather import gather, gather_scalar
+from ..kernels.scatter import scatter, scatter_pairs
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Group, Particles
 from .time_step import limits
+
+WIDEST = 9
+"""Doubles of the widest array of the particles, a tensor."""
 
 
 class SceneOperations:
@@ -31,10 +36,10 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
         self.mean_speed = 0.0
-        self._in_space = "2d" if dim == 2 else "3d"
-        self._scatter = getattr(scatter, f"scatter_{self._in_space}")
-        self._advance = getattr(gather, f"advance_{self._in_space}")
-        self._gradient = getattr(gather, f"gradient_{self._in_space}")
+        support = scheme.shape.support
+        self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
+        self._gather, self._gather_scalar = gather(dim, support), gather_scalar(dim, support)
+        self._gradient_due = False
         self.allocate()
 
     def allocate(self) -> None:
@@ -42,18 +47,19 @@ class SceneOperations:
         n, dim, support = len(self.particles), self.grid.dim, self.scheme.shape.support
         self.layout = Layout(self.grid, self.particles, self.window)
         self.base = np.zeros((n, dim), dtype=np.int32)
-        self.weight = np.zeros((n, dim, support))
-        self.gradient = np.zeros((n, dim, support))
+        # One block of memory, so that what a sort needs for a moment can lie where the tables will be again.
+        size = n * dim * support
+        self._tables = np.zeros(max(2 * size, n * WIDEST))
+        self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
-        self.slope = np.zeros((n, dim, support) if self.scheme.velocity.affine else (0, dim, support))
-        self._no_hoop = np.zeros((n, 0))
         self._rate = np.zeros(n)
+        self._no_rows = np.zeros((0, dim))
 
     # --- The frame of a step
 
     def begin(self) -> int | None:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
-        lost = self.layout.refresh()
+        lost = self.layout.refresh(self.base, self._tables)
         if lost is not None:
             return lost
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
@@ -67,7 +73,7 @@ class SceneOperations:
         """Before the first step: read the affine part of an initial velocity off the grid."""
         if self.scheme.velocity.affine and self.particles.velocity.any():
             self.map_to_grid(forces=False)
-            self.update_affine()
+            self._take(affine=True)
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
@@ -94,7 +100,7 @@ class SceneOperations:
         if forces:
             np.copyto(p.mapped_pressure, self._treated(p.pressure))
         self._scatter(
-            w.nodes, w.strides, w.lower, self.layout.slabs, self.base, self.weight, self.gradient, self.hoop,
+            w.nodes, w.strides, w.lower, self.layout.tasks, self.base, self.weight, self.gradient, self.hoop,
             p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
             self.cell_size, momentum, forces,
         )  # fmt: skip
@@ -113,37 +119,40 @@ class SceneOperations:
 
     # --- Nodes to particles
 
-    def map_to_particles(self, dt: float) -> None:
+    def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
+        self._gradient_due = velocity_gradient
         self.scheme.velocity.map_to_particles(self, dt)
+        if self._gradient_due:  # the velocity update has ways of its own
+            self.update_velocity_gradient()
 
-    def advance(self, dt: float, *, flip: float) -> None:
-        p, w = self.particles, self.window
-        self._advance(
-            w.nodes, w.strides, w.lower, self.base, self.weight, self.hoop, dt, flip, p.position, p.velocity
-        )
-
-    def update_affine(self) -> None:
-        p, w = self.particles, self.window
-        gather.affine_slopes(self.weight, self.cell_size, self.slope)
-        self._gradient(
-            w.nodes, w.strides, w.lower, self.base, self.weight, self.slope, self._no_hoop, p.affine
-        )
+    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+        self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
+        self._gradient_due = False
 
     def update_velocity_gradient(self) -> None:
-        w = self.window
-        self._gradient(
-            w.nodes, w.strides, w.lower, self.base, self.weight, self.gradient, self.hoop,
-            self.particles.velocity_gradient,
+        self._take(strain=True)
+        self._gradient_due = False
+
+    def _take(
+        self,
+        dt: float = 0.0,
+        flip: float = 0.0,
+        move: bool = False,
+        strain: bool = False,
+        affine: bool = False,
+    ) -> None:
+        p, w = self.particles, self.window
+        self._gather(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.gradient, self.hoop, self.cell_size,
+            dt, flip, p.position, p.velocity, p.velocity_gradient, self._rate, p.affine, move, strain, affine,
         )  # fmt: skip
 
     # --- Particles
 
     def update_stress(self, dt: float) -> None:
         p = self.particles
-        tensors.trace(p.velocity_gradient, self._rate)
-        tensors.stretch_volume(self._treated(self._rate), dt, p.volume_ratio)
         self.relax_volume(dt)
-        np.multiply(p.volume_ratio, p.initial_volume, out=p.volume)
+        volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
         for group in p.groups:
@@ -161,10 +170,9 @@ class SceneOperations:
 
     def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
-        domains.follow_strain(p.velocity_gradient, dt, p.box)
-        if rule == "strain":
-            np.maximum(p.box, p.least_half_size, out=p.half_size)
-        elif rule == "stretch":
+        least = self._no_rows if p.least_half_size is None else p.least_half_size
+        domains.follow_strain(p.velocity_gradient, dt, p.box, least, p.half_size)
+        if rule == "stretch":
             domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
         elif rule == "volume":
             domains.follow_volume(p.volume_ratio, p.initial_half_size, p.half_size)
@@ -193,8 +201,9 @@ class SceneOperations:
         p = self.particles
         for group in p.groups:
             if group.law.uses_equation_of_state:
-                mean = self.nodes_to_particles(self._average(p.volume_ratio, self._only(group)))
-                p.volume_ratio[group.part] += -math.expm1(-rate * dt) * (mean - p.volume_ratio)[group.part]
+                self._average_at_nodes(p.volume_ratio, self._only(group))
+                mean = self._average_at_particles()
+                volumes.draw(p.volume_ratio[group.part], mean[group.part], -math.expm1(-rate * dt))
 
     def _only(self, group: Group) -> np.ndarray:
         """Initial volumes of a material, zero for the others."""
@@ -207,21 +216,28 @@ class SceneOperations:
 
     # --- Fields in general
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        return self._average(values, self._measure(measure))
+    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        self._average_at_nodes(values, self._measure(measure))
+        return self._average_at_particles()
 
-    def _average(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Σ w N f / Σ w N at the nodes; zero where nothing is."""
-        w = self.window
-        field = np.zeros((len(w.nodes), 2))
-        scatter.scatter_scalar(
-            field, w.strides, w.lower, self.layout.slabs, self.base, self.weight, weight, values
-        )
-        nodes.fold(field, *self._faces(), 0, 2, False)
-        total, weighted = field[:, 0], field[:, 1]
-        average = np.divide(weighted, total, out=np.zeros(len(field)), where=total > 0)
-        nodes.fill(average[:, None], *self._faces(), 0, 1, False)
-        return average
+    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+        self._average_at_nodes(values, self._measure(measure))
+        return self.window.average[:, 0].copy()
+
+    def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
+        self.window.average[:, 0] = nodal
+        return self._average_at_particles()
+
+    def _average_at_nodes(self, values: np.ndarray, weight: np.ndarray) -> None:
+        """Σ w N f / Σ w N into ``window.average``; zero where nothing is."""
+        w, tables = self.window, (self.base, self.weight)
+        self._scatter_pairs(w.pairs, w.strides, w.lower, self.layout.tasks, *tables, weight, values)
+        nodes.divide_pairs(w.pairs, w.average, *self._faces())
+
+    def _average_at_particles(self) -> np.ndarray:
+        w, out = self.window, np.empty(len(self.particles))
+        self._gather_scalar(w.average, w.strides, w.lower, self.base, self.weight, out)
+        return out
 
     def _measure(self, name: Measure) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
@@ -233,9 +249,3 @@ class SceneOperations:
                 if not group.law.uses_equation_of_state:
                     measure[group.part] = 0.0
         return measure
-
-    def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
-        w = self.window
-        out = np.empty(len(self.particles))
-        gather.gather_scalar(nodal, w.strides, w.lower, self.base, self.weight, out)
-        return out

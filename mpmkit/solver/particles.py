@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+from ..kernels.sort import permute
 
 
 @dataclass
@@ -56,11 +57,12 @@ class Particles:
     initial_volume: np.ndarray
     volume: np.ndarray
     volume_ratio: np.ndarray
-    initial_half_size: np.ndarray
     half_size: np.ndarray
     """(n, dim) half side lengths of the domains that the shape function sees, by its own rule"""
-    least_half_size: np.ndarray
-    """(n, dim) half side lengths below which the domains do not get by strain"""
+    initial_half_size: np.ndarray | None
+    """(n, dim) what they were, where they follow from the deformation as a whole"""
+    least_half_size: np.ndarray | None
+    """(n, dim) what they never fall below, where they follow the strain step by step"""
     box: np.ndarray
     """(n, dim) half side lengths of the material's boxes, m, by the normal strain along each axis"""
     velocity_gradient: np.ndarray
@@ -94,10 +96,13 @@ class Particles:
             group.state = {name: array[local] for name, array in group.state.items()}
             group.part = slice(int(start), int(stop))
 
-    def reorder(self, order: np.ndarray) -> None:
-        """Put the particles into a new order, which must leave each group in its own part."""
+    def reorder(self, order: np.ndarray, scratch: np.ndarray) -> None:
+        """Put the particles into a new order, which must leave each group in its own part.
+
+        ``scratch`` is a flat array of doubles, as many as the widest array has.
+        """
         for array in self.arrays().values():
-            array[...] = array[order]
+            _permute(array, order, scratch)
         for group in self.groups:
             local = order[group.part] - group.part.start
             for array in group.state.values():
@@ -119,3 +124,12 @@ class Particles:
     def nbytes(self) -> int:
         states = sum(array.nbytes for group in self.groups for array in group.state.values())
         return states + sum(array.nbytes for array in self.arrays().values())
+
+
+def _permute(array: np.ndarray, order: np.ndarray, scratch: np.ndarray) -> None:
+    if array.size == 0:
+        return
+    rows = array.reshape(len(array), -1)
+    sorted_rows = scratch.view(array.dtype)[: array.size].reshape(rows.shape)
+    permute(rows, order, sorted_rows)
+    rows[...] = sorted_rows

@@ -53,6 +53,7 @@ def make_particles(case: Case) -> Particles:
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
     n = len(position)
+    rule = case.scheme.shape.particle_domain
     affine = case.space_.dim if case.scheme.velocity.affine else 0
     particles = Particles(
         number=np.arange(n, dtype=np.int64),
@@ -69,9 +70,11 @@ def make_particles(case: Case) -> Particles:
         initial_volume=volume,
         volume=volume.copy(),
         volume_ratio=np.ones(n),
-        initial_half_size=half_size,
-        half_size=half_size.copy(),
-        least_half_size=np.minimum(half_size, LEAST_WIDTH * case.space_.dim * case.grid.cell_size / 2),
+        half_size=half_size,
+        initial_half_size=half_size.copy() if rule in ("stretch", "volume") else None,
+        least_half_size=np.minimum(half_size, LEAST_WIDTH * case.space_.dim * case.grid.cell_size / 2)
+        if rule == "strain"
+        else None,
         box=half_size.copy(),
         velocity_gradient=np.zeros((n, 3, 3)),
         stress=np.zeros((n, 6)),

@@ -14,6 +14,7 @@ from .grid import Grid
 from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
+from .particles import Particles
 from .scene import make_particles
 from .splitting import OutOfMemory, split
 from .time_step import Limits, choose_step, limits, warnings
@@ -30,10 +31,15 @@ class Simulation:
     ...     simulation.advance()
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, particles: Particles | None = None) -> None:
+        """
+        Args:
+            case: a validated case.
+            particles: a state to go on from; the case's bodies at rest in their places unless told.
+        """
         self.case = case
         self.grid = Grid.of(case)
-        self.particles = make_particles(case)
+        self.particles = make_particles(case) if particles is None else particles
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )

@@ -68,7 +68,8 @@ def _halve(p: Particles, which: np.ndarray, axis: int, room: np.ndarray, ring: b
         for extensive in (p.mass, p.initial_volume, p.volume):
             extensive[half] *= part
         for size in (p.initial_half_size, p.half_size, p.box):
-            size[half, axis] /= 2
+            if size is not None:
+                size[half, axis] /= 2
         p.position[half, axis] += shift
         if p.affine.shape[1]:  # about the centroid of the two, so that they have the parent's momentum
             from_centroid = shift - (1 - 2 * share) * offset

@@ -173,7 +173,7 @@ class Channel:
         for extensive in (p.mass, p.volume, p.initial_volume):
             extensive *= (upper - lower) / (2 * half)
         p.position[:, 1] = (lower + upper) / 2
-        p.half_size[:, 1] = p.initial_half_size[:, 1] = p.box[:, 1] = (upper - lower) / 2
+        p.half_size[:, 1] = p.box[:, 1] = (upper - lower) / 2
 
     def start_with(self, speed: np.ndarray) -> None:
         """Give the particles this velocity along x."""

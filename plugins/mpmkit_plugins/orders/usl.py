@@ -28,8 +28,7 @@ class USL(UpdateOrder):
     def step(self, ops: Operations, dt: float) -> None:
         ops.map_to_grid()
         ops.solve_momentum(dt)
-        ops.update_velocity_gradient()
-        ops.map_to_particles(dt)
+        ops.map_to_particles(dt, velocity_gradient=True)
         ops.update_stress(dt)
 
 

@@ -31,7 +31,7 @@ class NodalAverage(VolumetricTreatment):
     )
 
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:
-        return ops.nodes_to_particles(ops.particles_to_nodes(field))
+        return ops.average(field)
 
     def relaxation_rate(self, ops: Operations) -> float:
         return self.relaxation * ops.mean_speed / ops.cell_size

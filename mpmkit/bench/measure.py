@@ -1,0 +1,105 @@
+"""Particle-steps a second, and where they go."""
+
+from __future__ import annotations
+
+import time as clock
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from statistics import median
+from typing import Any
+
+from ..solver.simulation import Simulation
+from ..threads import use_threads
+from .midflow import in_mid_flow
+from .scenes import BenchScene
+
+WARM_UP = 3
+"""Steps before the clock starts: kernels are compiled or loaded, particles sorted."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Speed of a scene. ``kernels`` is nanoseconds a particle-step by operation; their sum is the step."""
+
+    scene: str
+    particles: int
+    threads: int
+    particle_steps_per_second: float
+    kernels: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def measure(scene: BenchScene, threads: int | None = None, seconds: float = 5.0) -> Timing:
+    """Time full steps of a scene in mid-flow, with everything a real run does.
+
+    Args:
+        scene: one of ``SCENES``.
+        threads: threads to use; as many as pay off unless told.
+        seconds: for how long.
+    """
+    return timed(in_mid_flow(scene), scene.name, threads, seconds)
+
+
+def timed(simulation: Simulation, name: str, threads: int | None, seconds: float) -> Timing:
+    """As ``measure``, of a scene that is already set up; it moves on."""
+    threads = use_threads(threads, len(simulation.particles))
+    for _ in range(WARM_UP):
+        simulation.advance()
+    particles = len(simulation.particles)
+    watch = Stopwatch(simulation.operations)
+    steps: list[float] = []
+    begin = clock.perf_counter()
+    while not steps or clock.perf_counter() - begin < seconds:
+        start = clock.perf_counter()
+        simulation.advance()
+        steps.append(clock.perf_counter() - start)
+    watch.remove()
+    total = sum(steps)
+    kernels = {
+        name: spent / total for name, spent in sorted(watch.spent.items(), key=lambda item: -item[1])
+    }
+    kernels["outside"] = 1.0 - sum(kernels.values())
+    nanoseconds = 1e9 * total / len(steps) / particles
+    return Timing(
+        name,
+        particles,
+        threads,
+        particles / median(steps),
+        {name: share * nanoseconds for name, share in kernels.items()},
+    )
+
+
+class Stopwatch:
+    """Adds up the time in each operation of a scene, less that in the operations that it calls."""
+
+    def __init__(self, operations: Any) -> None:
+        self.spent: dict[str, float] = defaultdict(float)
+        self._operations = operations
+        self._inner = [0.0]
+        self._names = [
+            name
+            for name in dir(type(operations))
+            if not name.startswith("__") and callable(getattr(operations, name)) and name != "step"
+        ]
+        for name in self._names:
+            setattr(operations, name, self._timed(name, getattr(operations, name)))
+
+    def remove(self) -> None:
+        for name in self._names:
+            delattr(self._operations, name)
+
+    def _timed(self, name: str, operation: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any, **options: Any) -> Any:
+            self._inner.append(0.0)
+            start = clock.perf_counter()
+            try:
+                return operation(*arguments, **options)
+            finally:
+                whole = clock.perf_counter() - start
+                self.spent[name] += whole - self._inner.pop()
+                self._inner[-1] += whole
+
+        return call

@@ -1,0 +1,132 @@
+"""exp, log and powers without a branch, for loops over arrays: the compiler takes eight particles at once.
+
+The functions of the C library are called one number at a time, and cost more than all the rest of a law.
+These are plain series after the usual reduction of the argument, exact to a few units in the last place:
+
+    exp x = 2^n e^r,        r = x - n ln 2,  |r| <= ln(2)/2,     Taylor to r^13
+    ln x = k ln 2 + ln m,   m in [√½, √2],   s = (m-1)/(m+1),    ln m = 2 artanh s, Taylor to s^25
+
+Arguments must be finite; those of ``log`` and ``power`` at least ``SMALLEST``. Anything else gives numbers
+without meaning.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+from .compile import inline
+
+SMALLEST = 2.3e-308
+"""Least number that has all its digits."""
+
+LN2_HIGH = math.ldexp(math.floor(math.ldexp(math.log(2), 32)), -32)
+"""The first 32 bits of ln 2, so that n LN2_HIGH is exact."""
+LN2_LOW = (math.log(2) - LN2_HIGH) + 2.3190468138462996e-17
+"""The rest of ln 2; the number is what a double leaves of it."""
+PER_LN2 = 1 / math.log(2)
+ROOT2 = math.sqrt(2)
+MANTISSA, BIAS = 52, 1023
+FRACTION = (1 << MANTISSA) - 1
+ONE = BIAS << MANTISSA
+
+
+@intrinsic
+def bits(typing, x):
+    """The 64 bits of a double as an integer."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.bitcast(arguments[0], ir.IntType(64))
+
+    return types.int64(types.float64), generate
+
+
+@intrinsic
+def from_bits(typing, i):
+    """The double that has these 64 bits."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.bitcast(arguments[0], ir.DoubleType())
+
+    return types.float64(types.int64), generate
+
+
+if numba.config.DISABLE_JIT:
+
+    def bits(x):  # noqa: F811
+        return int(np.float64(x).view(np.int64))
+
+    def from_bits(i):  # noqa: F811
+        return float(np.int64(i).view(np.float64))
+
+
+@inline()
+def expm1_and_scale(x):
+    """e^r - 1 and 2^n, of which e^x is made."""
+    x = min(max(x, -708.0), 709.0)
+    n = math.floor(x * PER_LN2 + 0.5)
+    r = (x - n * LN2_HIGH) - n * LN2_LOW
+    q = 1 / 6227020800
+    q = q * r + 1 / 479001600
+    q = q * r + 1 / 39916800
+    q = q * r + 1 / 3628800
+    q = q * r + 1 / 362880
+    q = q * r + 1 / 40320
+    q = q * r + 1 / 5040
+    q = q * r + 1 / 720
+    q = q * r + 1 / 120
+    q = q * r + 1 / 24
+    q = q * r + 1 / 6
+    q = q * r + 1 / 2
+    return r + r * r * q, from_bits((int(n) + BIAS) << MANTISSA)
+
+
+@inline()
+def exp(x):
+    """e^x, which is taken at -708 or 709 beyond them."""
+    part, scale = expm1_and_scale(x)
+    return scale + scale * part
+
+
+@inline()
+def expm1(x):
+    """e^x - 1, to all digits near zero."""
+    part, scale = expm1_and_scale(x)
+    return scale * part + (scale - 1.0)
+
+
+@inline()
+def log(x):
+    """ln x."""
+    i = bits(x)
+    exponent = (i >> MANTISSA) - BIAS
+    m = from_bits((i & FRACTION) | ONE)
+    upper = m > ROOT2
+    m = 0.5 * m if upper else m
+    k = float(exponent + 1 if upper else exponent)
+    s = (m - 1.0) / (m + 1.0)
+    z = s * s
+    q = 1 / 25
+    q = q * z + 1 / 23
+    q = q * z + 1 / 21
+    q = q * z + 1 / 19
+    q = q * z + 1 / 17
+    q = q * z + 1 / 15
+    q = q * z + 1 / 13
+    q = q * z + 1 / 11
+    q = q * z + 1 / 9
+    q = q * z + 1 / 7
+    q = q * z + 1 / 5
+    q = q * z + 1 / 3
+    return k * LN2_HIGH + (2 * s + (2 * s * z * q + k * LN2_LOW))
+
+
+@inline()
+def power(x, exponent):
+    """x^exponent; its relative error grows with |exponent ln x|."""
+    return exp(exponent * log(x))

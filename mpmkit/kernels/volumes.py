@@ -1,0 +1,26 @@
+"""How the volumes of the particles follow the flow."""
+
+from __future__ import annotations
+
+from numba import prange
+
+from .compile import CHUNK, chunk_count, kernel
+
+
+@kernel()
+def stretch(rate, dt, initial_volume, volume_ratio, volume):
+    """J ← J (1 + Δt tr L) and V = V0 J, from the volumetric rate tr L, 1/s; all ``(n,)``."""
+    n = len(rate)
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            volume_ratio[p] *= 1 + dt * rate[p]
+            volume[p] = initial_volume[p] * volume_ratio[p]
+
+
+@kernel()
+def draw(volume_ratio, mean, part):
+    """J ← J + part (mean J - J)."""
+    n = len(volume_ratio)
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            volume_ratio[p] += part * (mean[p] - volume_ratio[p])
