@@ -23,6 +23,7 @@ COLUMNS = (
     Variable("max_speed", "m/s", "largest speed"),
     Variable("fractured_fraction", "1", "part of the volume in boxes longer than a cell"),
     Variable("time_step", "s", "time step"),
+    Variable("mach_number", "1", "largest speed over the sound speed"),
 )
 """The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""
 
@@ -80,7 +81,10 @@ class Recorder:
 
     def _add_row(self) -> None:
         simulation, particles = self.simulation, self.simulation.particles
-        values = simulation.measures(particles) | {"time_step": simulation.time_step}
+        values = simulation.measures(particles) | {
+            "time_step": simulation.time_step,
+            "mach_number": simulation.mach_number,
+        }
         by_number = np.argsort(particles.number)
         fields: dict[str, np.ndarray] = {
             name: PARTICLE_FIELDS[name](particles, simulation.grid)[by_number]

@@ -13,7 +13,8 @@ from types import ModuleType
 
 import pluggy
 
-from .contracts import API_VERSION, KINDS, Plugin, hooks
+from .contracts import API_VERSION, KINDS, Plugin, ShapeFunction, hooks
+from .contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
 """Parameters that a plug-in cannot have, because something else stands at that key of a case."""
@@ -166,6 +167,10 @@ def _check(plugin: type[Plugin], kind: str) -> None:
         raise ValueError(
             f"its name is '{plugin.name}'; it must be of lower-case letters, digits and single hyphens"
         )
+    if issubclass(plugin, ShapeFunction):
+        support = getattr(plugin, "support", None)
+        if support not in range(2, MOST_NODES + 1):
+            raise ValueError(f"its support is {support}; it must be 2 to {MOST_NODES} nodes along an axis")
     if inspect.isabstract(plugin):
         missing = ", ".join(sorted(plugin.__abstractmethods__))
         raise TypeError(f"{plugin.__name__} lacks {missing}, which a {contract.__name__} must have")

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import xarray
 
 LOGGER = logging.getLogger("mpmkit")
+COMPRESSIBLE = 0.1
+"""Mach number above which the density may change by more than half a percent as the material flows."""
 TOLD_EVERY = 0.2
 """Seconds between two calls of a listener."""
 
@@ -154,9 +156,17 @@ def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None
     simulation.advance(until)  # the first step loads or compiles the kernels: the clock starts behind it
     start = told = clock.monotonic()
     recorder.record()
+    warned = False
     while until - simulation.time > 1e-9 * until:
         simulation.advance(until - simulation.time)
         recorder.record()
+        if simulation.mach_number > COMPRESSIBLE and not warned:
+            warned = True
+            LOGGER.warning(
+                "the Mach number is %.3g at t = %.4g s: the material flows as if it were compressible; "
+                "a larger sound_speed makes it less so",
+                simulation.mach_number, simulation.time,
+            )  # fmt: skip
         now = clock.monotonic()
         if listen is not None and now - told > TOLD_EVERY:
             told = now

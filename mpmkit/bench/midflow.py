@@ -60,7 +60,7 @@ def _cut(case: Case, coarse: Particles, times: int) -> Particles:
         fine.initial_volume *= fine.position[:, 0] / coarse.position[parent, 0]
     fine.volume = fine.initial_volume * fine.volume_ratio
     fine.mass = group.density * fine.initial_volume
-    if case.scheme.shape.particle_domain == "strain":
+    if fine.least_half_size is not None:
         fine.half_size = np.maximum(fine.box, fine.least_half_size)
     fine.stress = coarse.stress[parent]
     fine.pressure = group.pressure(fine.volume_ratio)

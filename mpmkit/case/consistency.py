@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .allowed import nearest, shown
+from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 
 if TYPE_CHECKING:
     from .model import Case, Material
@@ -154,9 +155,14 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     elif material.sound_speed is None:
         raise ValueError(
             f"{field} is missing; the law '{material.law}' needs it, in m/s or as "
-            '{"factor": 10} for 10 √(2 g h)'
+            '{"factor": 10} for 10 √(2 g h), or {"mach": 0.1}'
         )
-    elif not isinstance(material.sound_speed, float) and not case.gravity_vector.any():
+    elif isinstance(material.sound_speed, SoundSpeedMach) and case.largest_energy == 0:
+        raise ValueError(
+            f"{field} is a Mach number, but gravity is {case.gravity} and nothing moves; "
+            "give the speed itself, in m/s"
+        )
+    elif isinstance(material.sound_speed, SoundSpeedFactor) and not case.gravity_vector.any():
         raise ValueError(
             f"{field} is a factor of √(2 g h), but gravity is {case.gravity}; give the speed itself, in m/s"
         )

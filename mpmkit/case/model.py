@@ -12,7 +12,7 @@ from operator import or_
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, create_model, model_validator
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
@@ -22,15 +22,11 @@ from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..registry import Registry
 from ..spaces import SPACES, Space
+from .base import Model
 from .output import OutputSettings
+from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
 STANDARD_GRAVITY = 9.81
-
-
-class Model(BaseModel):
-    """Base of the case's own models: strict, finite, and no key that is not known."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Friction(Model):
@@ -64,29 +60,13 @@ class Grid(Model):
     )
 
 
-class SoundSpeedFactor(Model):
-    """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h)."""
-
-    factor: float = quantity("1", "multiple of √(2 g h)", gt=0)
-
-
-def _sound_speed_tag(value: Any) -> str:
-    return "factor" if isinstance(value, dict | SoundSpeedFactor) else "value"
-
-
-SoundSpeed = Annotated[
-    Annotated[float, Field(gt=0), Tag("value")] | Annotated[SoundSpeedFactor, Tag("factor")],
-    Discriminator(_sound_speed_tag),
-]
-
-
 class Material(Model):
     """A constitutive law with its parameters, a density and, for a fluid, a sound speed."""
 
     law: str
     density: float = quantity("kg/m^3", "initial density", gt=0)
     sound_speed: SoundSpeed | None = quantity(
-        "m/s", "artificial sound speed, or a factor of √(2 g h)", default=None
+        "m/s", "artificial sound speed, or a factor of √(2 g h), or the largest Mach number", default=None
     )
     equation_of_state: EquationOfState
 
@@ -137,6 +117,14 @@ class Body(Model):
     velocity: InitialVelocity | None = quantity(
         "m/s", "initial velocity along each axis, or a standing wave; at rest unless told", default=None
     )
+
+    @property
+    def largest_speed(self) -> float:
+        """Bound of the initial speed, m/s."""
+        if self.velocity is None:
+            return 0.0
+        vector = self.velocity if isinstance(self.velocity, list) else self.velocity.amplitude
+        return float(np.linalg.norm(vector))
 
 
 class TimeStep(Model):
@@ -200,17 +188,25 @@ class Case(Model):
 
     @cached_property
     def height(self) -> float:
-        """Vertical extent h of all bodies together, m, for c = factor √(2 g h)."""
+        """Vertical extent h of all bodies together, m."""
         bounds = [body.shape.bounds(self.space_) for body in self.bodies]
         return float(max(upper[-1] for _, upper in bounds) - min(lower[-1] for lower, _ in bounds))
 
+    @cached_property
+    def largest_energy(self) -> float:
+        """Largest energy that a particle has at the start, of speed and height above the lowest one, J/kg."""
+        fastest = max((body.largest_speed for body in self.bodies), default=0.0)
+        return float(np.linalg.norm(self.gravity_vector)) * self.height + fastest**2 / 2
+
     def sound_speed(self, material: Material) -> float | None:
-        """Sound speed of a material, m/s; None where its law needs none."""
+        """Sound speed of a material at the start, m/s; None where its law needs none."""
         if not material.constitutive_law.uses_equation_of_state:
             return None
         speed = material.sound_speed
         if isinstance(speed, SoundSpeedFactor):
             return speed.factor * math.sqrt(2 * float(np.linalg.norm(self.gravity_vector)) * self.height)
+        if isinstance(speed, SoundSpeedMach):
+            return math.sqrt(2 * self.largest_energy) / speed.mach
         return speed
 
     @model_validator(mode="after")

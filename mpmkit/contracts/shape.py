@@ -9,6 +9,9 @@ import numpy as np
 
 from .base import Plugin
 
+MOST_NODES = 4
+"""Nodes along an axis that a shape function may touch at most: those within a cell of the particle's own."""
+
 
 class ShapeFunction(Plugin):
     """How a particle is spread over the nodes around it.
@@ -18,7 +21,7 @@ class ShapeFunction(Plugin):
     """
 
     support: ClassVar[int]
-    """Nodes that a particle touches along each axis."""
+    """Nodes that a particle touches along each axis, 2 to 4: ``base`` is its own cell or the one before."""
 
     @property
     def particle_domain(self) -> str:

@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -99,15 +100,19 @@ def digest(sources: tuple[Path, ...], versions: tuple[str, ...] = ()) -> str:
     """Of the content of all Python files in these folders, or of these files."""
     total = hashlib.sha256("\0".join(versions).encode())
     for source in sources:
-        for file in sorted(source.rglob("*.py")) if source.is_dir() else [source]:
+        files = sorted(source.rglob("*.py")) if source.is_dir() else [source]
+        for file in filter(Path.is_file, files):  # an editor's lock is a link to nowhere
             total.update(str(file).encode() + b"\0" + file.read_bytes())
     return total.hexdigest()[:16]
 
 
 def forget_old_generations(root: Path, name: str) -> None:
     """Remove the compiled code of sources that are no more, but for the last few used."""
-    generations = [path for path in root.glob(f"{name}-*") if path.name.rpartition("-")[0] == name]
-    by_use = sorted(generations, key=lambda path: path.stat().st_mtime, reverse=True)
-    for path in by_use[KEPT:]:
-        if time.time() - path.stat().st_mtime > IN_USE:
+    generations = []
+    for path in root.glob(f"{name}-*"):
+        with suppress(OSError):  # another process may have removed it
+            if path.name.rpartition("-")[0] == name:
+                generations.append((path.stat().st_mtime, path))
+    for used, path in sorted(generations, reverse=True)[KEPT:]:
+        if time.time() - used > IN_USE:
             shutil.rmtree(path, ignore_errors=True)

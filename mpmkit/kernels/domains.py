@@ -13,8 +13,8 @@ from .compile import CHUNK, chunk_count, kernel
 def follow_strain(L, dt, box, least, half_size):
     """l_i ← l_i (1 + Δt D_ii), ``(n, dim)``, m: the box follows the normal strain along each axis.
 
-    The half-sizes that the shape function sees are those of the box, or ``least``; they stay as they are where
-    ``least`` has no rows.
+    The half-sizes that the shape function sees are those of the box, or ``least``; they stay as they are
+    where ``least`` has no rows.
 
     What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
     keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave

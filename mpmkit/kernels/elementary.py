@@ -58,10 +58,10 @@ def from_bits(typing, i):
 
 if numba.config.DISABLE_JIT:
 
-    def bits(x):  # noqa: F811
+    def bits(x):
         return int(np.float64(x).view(np.int64))
 
-    def from_bits(i):  # noqa: F811
+    def from_bits(i):
         return float(np.int64(i).view(np.float64))
 
 

@@ -2,9 +2,9 @@
 
 Particles are kept in blocks of cells. Blocks of one colour touch no common node, so that each colour is
 scattered in parallel without a race, in an order that does not depend on the number of threads. A node is a
-record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the sum of 2^axis over the axes
-along which it touches a Coulomb wall. A particle adds one vector to each record, which is built up axis by
-axis: what does not depend on the innermost axis is multiplied out before it.
+record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the sum of 2^axis over the
+axes along which it touches a Coulomb wall. A particle adds one vector to each record, which is built up axis
+by axis: what does not depend on the innermost axis is multiplied out before it.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ def scatter_pairs(dim: int, support: int):
     """The kernel that adds Σ measure N and Σ measure N value of a particle field to ``pairs (nodes, 2)``.
 
     A row of pairs is one vector, whose last lanes add nothing to the nodes behind the particle's; the window
-    has a node more along its last axis for them, and blocks are wide enough.
+    has two nodes more along its last axis for them, and blocks are wide enough.
     """
 
     @kernel()

@@ -1,7 +1,7 @@
 """The order of the particles in memory: colour by colour, block by block, cell by cell.
 
-A block is ``BLOCK_WIDTH`` cells wide along every axis; its colour is the parity of its place along each, so that
-two blocks of one colour are never neighbours. A block's nodes fit into the cache nearest to a core.
+A block is ``BLOCK_WIDTH`` cells wide along every axis; its colour is the parity of its place along each, so
+that two blocks of one colour are never neighbours. A block's nodes fit into the cache nearest to a core.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from numba import prange
 from .compile import CHUNK, chunk_count, function, kernel
 
 BLOCK_WIDTH = 6
-"""Cells. A particle that has drifted a cell out of its block touches nodes from 2 below to 2 above the block's
-cells and one more, and a row of pairs reaches a node beyond that; with 6 cells blocks of one colour never meet."""
+"""Cells. A particle that has drifted a cell out of its block touches nodes from 2 below to 2 above the
+block's cells and one more, and a row of pairs reaches a node beyond that; with 6 cells blocks of one colour
+never meet."""
 
 
 @kernel()
@@ -28,7 +29,8 @@ def find_cells(position, inverse_cell, cell):
 
 @function()
 def number_blocks(blocks, block_index, block_cell):
-    """Number all blocks, colour by colour: ``block_index`` by place, ``block_cell`` the lowest cell by number.
+    """Number all blocks, colour by colour: ``block_index`` by place, ``block_cell`` the lowest cell by
+    number.
 
     Returns the first block of each colour, and their number last.
     """
@@ -74,8 +76,10 @@ def find_keys(cell, low, blocks, block_index, key):
 
 @function()
 def counting_sort(key, begin, end, count, order):
-    """Stable order of particles begin..end-1 by their keys, into ``order``; ``count`` becomes the first of each
-    key, with one entry more than there are keys."""
+    """Stable order of particles begin..end-1 by their keys, into ``order``.
+
+    ``count`` becomes the first of each key, with one entry more than there are keys.
+    """
     count[:] = 0
     for p in range(begin, end):
         count[key[p] + 1] += 1

@@ -128,25 +128,25 @@ def lane(typing, vector, k):
 
 if numba.config.DISABLE_JIT:
 
-    def load(array, i):  # noqa: F811
+    def load(array, i):
         found = array.reshape(-1)[i : i + LANES]
         return np.concatenate([found, np.zeros(LANES - len(found))])
 
-    def store(array, i, vector):  # noqa: F811
+    def store(array, i, vector):
         there = array.reshape(-1)[i : i + LANES]
         there[:] = vector[: len(there)]
 
-    def zero():  # noqa: F811
+    def zero():
         return np.zeros(LANES)
 
-    def scale(factor, vector):  # noqa: F811
+    def scale(factor, vector):
         return factor * vector
 
-    def plus(total, factor, vector):  # noqa: F811
+    def plus(total, factor, vector):
         return total + factor * vector
 
-    def pack(a, b, c, d, e, f, g, h):  # noqa: F811
+    def pack(a, b, c, d, e, f, g, h):
         return np.array([a, b, c, d, e, f, g, h])
 
-    def lane(vector, k):  # noqa: F811
+    def lane(vector, k):
         return vector[k]

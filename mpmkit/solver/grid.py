@@ -109,7 +109,7 @@ class Window:
         low, high = self.reach(lowest_cell, highest_cell)
         # The image of a ghost lies one node inside the face, so the window that has the one has the other.
         size = [int(n) for n in high - low + 1]
-        size[-1] += 1  # rows of pairs reach one node beyond the last that a particle touches
+        size[-1] += 2  # rows of pairs are as wide as a vector: they reach beyond what a particle touches
         size += [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
         self.shape = (size[0], size[1], size[2])

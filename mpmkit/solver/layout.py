@@ -6,6 +6,8 @@ cell out of its own, so that sorting is rare and costs nothing in between.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import psutil
 
@@ -107,7 +109,7 @@ class Layout:
         """Cut the blocks of every colour into tasks of about equal load, all groups together."""
         load = (self._block_first - self._block_first[:, :1]).sum(axis=0)
         self.tasks = np.empty((len(self.particles.groups), len(first_of_colour) - 1, TASKS + 1), np.int64)
-        for colour, (begin, end) in enumerate(zip(first_of_colour, first_of_colour[1:], strict=False)):
+        for colour, (begin, end) in enumerate(pairwise(first_of_colour)):
             wanted = np.linspace(load[begin], load[end], TASKS + 1)
             cuts = begin + np.searchsorted(load[begin : end + 1], wanted)
             cuts[0], cuts[-1] = begin, end

@@ -14,7 +14,6 @@ from ..kernels.scatter import scatter, scatter_pairs
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Group, Particles
-from .time_step import limits
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
@@ -34,7 +33,7 @@ class SceneOperations:
         self.gravity = gravity
         self.radial = radial
         self.window = Window(grid)
-        self.acoustic_time = limits(particles.groups, grid.cell_size, 0.0).acoustic
+        self.acoustic_time = math.inf
         self.mean_speed = 0.0
         support = scheme.shape.support
         self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
@@ -59,15 +58,20 @@ class SceneOperations:
 
     def begin(self) -> int | None:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
-        lost = self.layout.refresh(self.base, self._tables)
-        if lost is not None:
-            return lost
+        lost = self._sort()
+        if lost is None:
+            self._evaluate_shapes()
+        return lost
+
+    def _sort(self) -> int | None:
+        return self.layout.refresh(self.base, self._tables)
+
+    def _evaluate_shapes(self) -> None:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
         shape.fill(p.position, p.half_size, dx, self.base, self.weight, self.gradient)
         if self.radial:
             base, weight, gradient = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
             shape.fill_radial(p.position[:, 0], p.half_size[:, 0], dx, base, weight, gradient, self.hoop)
-        return None
 
     def start(self) -> None:
         """Before the first step: read the affine part of an initial velocity off the grid."""
@@ -151,6 +155,17 @@ class SceneOperations:
 
     def update_stress(self, dt: float) -> None:
         p = self.particles
+        self._update_volumes(dt)
+        self._follow_domains(dt)
+        for group in p.groups:
+            self._update_law(group, dt)
+
+    def _update_law(self, group: Group, dt: float) -> None:
+        p = self.particles
+        group.law.update_stress(p.motion(group), group.state, dt, p.stress[group.part])
+
+    def _update_volumes(self, dt: float) -> None:
+        p = self.particles
         self.relax_volume(dt)
         volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
@@ -163,10 +178,6 @@ class SceneOperations:
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
-        self._follow_domains(dt)
-        for group in p.groups:
-            part = group.part
-            group.law.update_stress(p.motion(group), group.state, dt, p.stress[part])
 
     def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain

@@ -18,6 +18,9 @@ class Group:
     equation_of_state: EquationOfState
     density: float
     sound_speed: float | None
+    """m/s, of the equation of state, at present"""
+    mach: float | None
+    """largest Mach number, where the sound speed is to follow the flow"""
     part: slice
     state: dict[str, np.ndarray]
 
@@ -128,6 +131,9 @@ class Particles:
 
 def _permute(array: np.ndarray, order: np.ndarray, scratch: np.ndarray) -> None:
     if array.size == 0:
+        return
+    if not array.flags.c_contiguous:
+        array[...] = array[order]
         return
     rows = array.reshape(len(array), -1)
     sorted_rows = scratch.view(array.dtype)[: array.size].reshape(rows.shape)

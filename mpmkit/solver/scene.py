@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..case.model import Body, Case, Material
+from ..case.sound_speed import SoundSpeedMach
 from ..errors import CaseError
 from ..geometry import Sample, sample
 from .particles import Group, Particles
@@ -104,6 +105,7 @@ def _group(case: Case, material: Material, part: slice) -> Group:
         equation_of_state=material.equation_of_state,
         density=material.density,
         sound_speed=case.sound_speed(material),
+        mach=material.sound_speed.mach if isinstance(material.sound_speed, SoundSpeedMach) else None,
         part=part,
         state={
             name: np.full((count, *variable.shape), variable.initial, dtype=float)

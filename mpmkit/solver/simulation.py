@@ -16,6 +16,7 @@ from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
 from .scene import make_particles
+from .sound import follow_flow, mach_number
 from .splitting import OutOfMemory, split
 from .time_step import Limits, choose_step, limits, warnings
 
@@ -49,15 +50,21 @@ class Simulation:
         self.limits: Limits
         self.time_step: float
         self.limited_by: str
+        self.mach_number: float
+        """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
+        self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
         self.choose_time_step()
 
     def choose_time_step(self) -> None:
-        """Recompute the limits, and with them the step."""
-        scratch = np.empty(len(self.particles) // CHUNK + 1)
-        speed = largest_speed(self.particles.velocity, scratch)
-        self.limits = limits(self.particles.groups, self.grid.cell_size, float(speed))
+        """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
+        p = self.particles
+        follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
+        speed = float(largest_speed(p.velocity, np.empty(len(p) // CHUNK + 1)))
+        self.mach_number = mach_number(p, speed)
+        self.limits = limits(p.groups, self.grid.cell_size, speed)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits)
+        self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = self._mean_speed()
 
     def remarks(self) -> list[str]:

@@ -28,6 +28,14 @@ SMALL_STEP = 0.1
 long enough: a particle that enters a cell at speed v leaves the unstable range in (fraction) c / v steps."""
 RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
 SYRUP = {"law": "newtonian", "density": 1200.0, "viscosity": 5.0, "sound_speed": 10.0}
+CONCRETE = {
+    "law": "herschel-bulkley-evp",
+    "density": 1200.0,
+    "yield_stress": 20.0,
+    "consistency": 5.0,
+    "flow_index": 1.33,
+    "sound_speed": 10.0,
+}
 
 each_scheme = pytest.mark.parametrize("scheme", SCHEMES, ids="-".join)
 each_space = pytest.mark.parametrize("space", SPACES)
@@ -180,6 +188,8 @@ def run_with_threads(threads, make, steps):
     shake(simulation)
     for _ in range(steps):
         simulation.advance()
+        load = np.diff(simulation.operations.layout.tasks).sum(axis=0)
+        assert ((load > 0).sum(axis=1) > 1).any()  # blocks of one colour, for two threads to meet in
     assert simulation.operations.layout.sorts > 1  # the order of particles changed on the way
     return simulation.particles.arrays()
 
@@ -194,7 +204,7 @@ def assert_same_bits(make, steps=20):
 @each_space
 def test_thread_count_changes_no_bit(space, scheme):
     dim = 3 if space == "3d" else 2
-    lower, upper = [3, 3, 3][:dim], [[16, 9], [16, 5, 6]][dim - 2]
+    lower, upper = [3, 3, 3][:dim], [[16, 9], [17, 5, 6]][dim - 2]
     domain = [[0, 24], [0, 20], [0, 20]][:dim]
     velocity = [14.0, 6.0, 3.0][:dim]
     if space == "axisymmetric":
@@ -208,7 +218,7 @@ def test_thread_count_changes_no_bit(space, scheme):
 @each_space
 def test_thread_count_changes_no_bit_of_a_fluid(space, volumetric):
     dim = 3 if space == "3d" else 2
-    lower, upper = [0, 0, 0][:dim], [[16, 9], [16, 5, 6]][dim - 2]
+    lower, upper = [0, 0, 0][:dim], [[16, 9], [17, 5, 6]][dim - 2]
     domain = [[0, 30], [0, 14], [0, 14]][:dim]
     faces = {"plane-strain": {"x_min": "symmetry"}, "3d": {"x_min": "symmetry", "y_min": "slip"}}
     bodies = [(lower, upper, SYRUP, None)]
@@ -224,6 +234,30 @@ def test_thread_count_changes_no_bit_of_a_fluid(space, volumetric):
             gravity,
             volumetric=volumetric,
         )
+        simulation.particles.velocity[:, 0] += 12.0 * simulation.particles.position[:, 0]
+        return simulation
+
+    assert_same_bits(make)
+
+
+@each_space
+@pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
+def test_thread_count_changes_no_bit_of_two_materials_with_all_there_is(space, order):
+    """An affine velocity, averaged pressures, an exact yield stress, and a block of rubber beside it."""
+    dim = 3 if space == "3d" else 2
+    lower, middle, upper = [0, 0, 0][:dim], [[9, 8], [9, 5, 4]][dim - 2], [[16, 8], [17, 5, 4]][dim - 2]
+    bodies = [
+        (lower, middle, CONCRETE, None),
+        ([middle[0], *lower[1:]], upper, RUBBER, None),
+    ]
+    domain = [[0, 30], [0, 14], [0, 14]][:dim]
+    faces = {} if space == "axisymmetric" else {"x_min": "symmetry"}
+    faces["z_min"] = {"kind": "friction", "coefficient": 0.3}
+    gravity = [0.0] * (dim - 1) + [-9.81]
+
+    def make():
+        scheme = ("cpgimp", order, "apic")
+        simulation = simulate(space, scheme, bodies, domain, faces, gravity, 0.2, "nodal-average")
         simulation.particles.velocity[:, 0] += 12.0 * simulation.particles.position[:, 0]
         return simulation
 
@@ -290,7 +324,7 @@ def test_a_slip_floor_stands_for_the_mirrored_body(scheme):
 @pytest.mark.parametrize("direction", [1, -1], ids=["up", "down"])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_window_follows_a_fast_body(scheme, axis, direction):
-    """A small body crosses many slabs of a big domain; not one gram is left outside the stored nodes."""
+    """A small body crosses many blocks of a big domain; not one gram is left outside the stored nodes."""
     lower, upper = [100, 100], [101, 102]
     velocity = [0.0, 0.0]
     velocity[axis] = 60.0 * direction
@@ -311,7 +345,7 @@ def test_window_follows_a_fast_body(scheme, axis, direction):
 
 @each_scheme
 def test_motion_does_not_depend_on_the_place(scheme):
-    """A deforming body does the same 1000 cells further on, window, slabs and all."""
+    """A deforming body does the same 1000 cells further on, window, blocks and all."""
     far = 1003
     found = []
     for corner in (3, far):

@@ -1,0 +1,43 @@
+"""How a case chooses the sound speed that stands in for incompressibility."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Discriminator, Field, Tag
+
+from ..contracts import quantity
+from .base import Model
+
+
+class SoundSpeedFactor(Model):
+    """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h)."""
+
+    factor: float = quantity("1", "multiple of √(2 g h)", gt=0)
+
+
+class SoundSpeedMach(Model):
+    """Sound speed that follows the flow, c = √(2 e) / mach.
+
+    e, J/kg, is the largest energy that a particle has, of its speed and of its height above the lowest one:
+    none can come to flow faster than √(2 e). For a body at rest e = g h; as it slumps, e falls, and the steps
+    grow.
+    """
+
+    mach: float = quantity("1", "largest Mach number that the flow can reach", gt=0, lt=1)
+
+
+SoundSpeed = Annotated[
+    Annotated[float, Field(gt=0), Tag("value")]
+    | Annotated[SoundSpeedFactor, Tag("factor")]
+    | Annotated[SoundSpeedMach, Tag("mach")],
+    Discriminator(lambda value: _tag(value)),
+]
+
+
+def _tag(value: Any) -> str:
+    if isinstance(value, dict):
+        return "mach" if "mach" in value else "factor"
+    if isinstance(value, SoundSpeedMach):
+        return "mach"
+    return "factor" if isinstance(value, SoundSpeedFactor) else "value"

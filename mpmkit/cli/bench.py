@@ -1,0 +1,49 @@
+"""``mpmkit bench``."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from . import options
+
+SECONDS = 5.0
+"""For how long a scene is timed unless told."""
+
+
+@click.command("bench")
+@click.argument("scenes", nargs=-1, metavar="[SCENE]...")
+@options.threads
+@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), default=SECONDS, show_default=True)
+@options.as_json
+def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_json: bool) -> None:
+    """Time full steps of the standard scenes in mid-flow, kernel by kernel; all of them unless named."""
+    from ..bench import SCENES, measure
+    from ..errors import CaseError
+
+    for name in scenes:
+        if name not in SCENES:
+            raise CaseError(f"scene is '{name}'; it must be one of {', '.join(SCENES)}")
+    timings = []
+    for name in scenes or SCENES:
+        timing = measure(SCENES[name], threads, seconds)
+        timings.append(timing.as_dict())
+        if not as_json:
+            click.echo(_table(SCENES[name].description, timings[-1]))
+    if as_json:
+        click.echo(json.dumps(timings, indent=2, ensure_ascii=False))
+
+
+def _table(description: str, timing: dict) -> str:
+    total = sum(timing["kernels"].values())
+    lines = [
+        f"{timing['scene']}: {description}",
+        f"  {timing['particles']:,} particles, threads: {timing['threads']}",
+        f"  {timing['particle_steps_per_second'] / 1e6:.2f} million particle-steps/s",
+        *(
+            f"  {name:<20}{spent:8.1f} ns{100 * spent / total:6.0f} %"
+            for name, spent in timing["kernels"].items()
+        ),
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,104 @@
+"""Vectors of eight doubles against NumPy, and the kernels made of them where nothing is compiled."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpmkit.kernels.compile import function
+from mpmkit.kernels.vectors import LANES, lane, load, pack, plus, scale, store, zero
+
+
+@function()
+def _move(source, i, target, j):
+    store(target, j, load(source, i))
+
+
+@function()
+def _combine(x, y, factor, out):
+    u, v = load(x, 0), load(y, 0)
+    store(out, 0, scale(factor, u))
+    store(out, LANES, plus(u, factor, v))
+    store(out, 2 * LANES, plus(zero(), factor, v))
+
+
+@function()
+def _reverse(x, out):
+    v = load(x, 0)
+    store(
+        out,
+        0,
+        pack(lane(v, 7), lane(v, 6), lane(v, 5), lane(v, 4), lane(v, 3), lane(v, 2), lane(v, 1), lane(v, 0)),
+    )
+
+
+@pytest.mark.parametrize(("i", "j"), [(0, 0), (3, 8), (16, 1), (24, 24)])
+def test_load_and_store_move_eight_doubles_at_any_flat_index(i, j):
+    rng = np.random.default_rng(1)
+    source, target = rng.normal(size=(4, LANES)), rng.normal(size=(16, 2))
+    expected = target.copy()
+    expected.reshape(-1)[j : j + LANES] = source.reshape(-1)[i : i + LANES]
+    _move(source, i, target, j)
+    np.testing.assert_array_equal(target, expected)
+
+
+def test_scale_and_plus():
+    x, y = np.random.default_rng(2).normal(size=(2, LANES))
+    out, factor = np.empty((3, LANES)), 0.7
+    _combine(x, y, factor, out)
+    np.testing.assert_array_equal(out[[0, 2]], [factor * x, factor * y])
+    np.testing.assert_allclose(out[1], x + factor * y, rtol=0, atol=1e-15)  # may be one fused operation
+
+
+def test_pack_and_lane_keep_the_order():
+    x, out = np.arange(LANES) + 0.5, np.empty(LANES)
+    _reverse(x, out)
+    np.testing.assert_array_equal(out, x[::-1])
+
+
+def test_a_scalar_beyond_a_number_stays_in_its_lane():
+    """Zero times what is no number is none: only lanes that hold one may be spoilt."""
+    x, out = np.ones(LANES), np.empty((3, LANES))
+    x[3], x[5] = np.nan, np.inf
+    _combine(x, np.ones(LANES), 0.5, out)
+    assert (np.isfinite(out[1]) == np.isfinite(x)).all()
+
+
+UNCOMPILED = """
+import numba
+import numpy as np
+from test_kernels import NODE, Scene, gathered
+
+assert numba.config.DISABLE_JIT
+for dim in (2, 3):
+    scene = Scene(dim, 3, n=9, affine=True)
+    found = np.zeros((scene.count, NODE))
+    scene.scatter(found, True, True)
+    np.testing.assert_allclose(found, scene.reference(True, True), rtol=0, atol=1e-12)
+    grid = scene.rng.normal(size=(scene.count, NODE))
+    new, _, L, C = gathered(scene, grid)
+    scene.gather(grid, move=True, strain=True, affine=True)
+    np.testing.assert_allclose(scene.velocity, new, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(scene.velocity_gradient[:, :dim, :dim], L[:, :dim, :dim], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(scene.affine, C, rtol=0, atol=1e-12)
+
+from mpmkit.kernels import elementary
+for x in (0.3, 2.0, 1e-5, 700.0):
+    found = elementary.exp(x), elementary.expm1(-x), elementary.log(x), elementary.power(x, 0.5)
+    np.testing.assert_allclose(found, [np.exp(x), np.expm1(-x), np.log(x), x**0.5], rtol=1e-14)
+"""
+
+
+def test_kernels_run_uncompiled():
+    """For a debugger: NUMBA_DISABLE_JIT=1, and NumPy stands in for what only a compiler has."""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-c", UNCOMPILED]
+    done = subprocess.run(
+        command, cwd=Path(__file__).parent, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
