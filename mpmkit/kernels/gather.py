@@ -23,7 +23,7 @@ def _inverse_moment(weight, p, axis, support, mean):
     """1 / Σ N (x_node - x̄)² along an axis, in 1/cells².
 
     The moment, which nearly vanishes where a small box is at a node, counts as ``LEAST_MOMENT`` at the least:
-    a particle that barely reaches beyond one node knows no slope, and would be stiffer than the sound with one.
+    a particle that barely reaches beyond one node knows no slope, and would be stiffer than sound with one.
     """
     moment = 0.0
     for a in range(support):

@@ -43,7 +43,8 @@ class HerschelBulkleyEVP(ElastoviscoplasticLaw):
 
 
 def _iterations(flow_index: float) -> int:
-    """Steps of Newton's method that bring its error from ln 2 below rounding: e ← (n-1)² / (8 min(n, 1)) e²."""
+    """Steps of Newton's method that bring its error e from ln 2 below rounding, by the bound on its square,
+    e ← (n - 1)² / (8 min(n, 1)) e²."""
     error, curvature = math.log(2), (flow_index - 1) ** 2 / (8 * min(flow_index, 1))
     for steps in range(1, MOST_ITERATIONS):
         error = min(curvature * error, 0.5) * error
