@@ -6,7 +6,6 @@ import time as clock
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from statistics import median
 from typing import Any
 
 from ..solver.simulation import Simulation
@@ -61,20 +60,18 @@ def timed(simulation: Simulation, name: str, threads: int | None, seconds: float
         simulation.advance()
     particles = len(simulation.particles)
     watch = Stopwatch(simulation.operations)
-    steps: list[float] = []
-    begin = clock.perf_counter()
-    while not steps or clock.perf_counter() - begin < seconds:
-        start = clock.perf_counter()
+    begin, before = clock.perf_counter(), simulation.particle_steps
+    while (spent := clock.perf_counter() - begin) < seconds or simulation.particle_steps == before:
         simulation.advance()
-        steps.append(clock.perf_counter() - start)
     watch.remove()
-    nanoseconds = 1e9 / len(steps) / particles
+    done = simulation.particle_steps - before
+    nanoseconds = 1e9 / done
     kernels = {
         name: nanoseconds * sum(watch.spent[operation] for operation in operations)
         for name, operations in KERNELS.items()
     }
-    kernels["outside"] = nanoseconds * sum(steps) - sum(kernels.values())
-    return Timing(name, particles, threads, particles / median(steps), kernels)
+    kernels["outside"] = nanoseconds * spent - sum(kernels.values())
+    return Timing(name, particles, threads, done / spent, kernels)
 
 
 class Stopwatch:

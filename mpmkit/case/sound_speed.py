@@ -29,15 +29,16 @@ class SoundSpeedMach(Model):
 
 SoundSpeed = Annotated[
     Annotated[float, Field(gt=0), Tag("value")]
-    | Annotated[SoundSpeedFactor, Tag("factor")]
-    | Annotated[SoundSpeedMach, Tag("mach")],
+    | Annotated[SoundSpeedFactor, Tag("of-the-height")]
+    | Annotated[SoundSpeedMach, Tag("of-the-flow")],
     Discriminator(lambda value: _tag(value)),
 ]
 
 
 def _tag(value: Any) -> str:
+    # No tag is the name of a key: in the path of an error the two must not be taken for each other.
     if isinstance(value, dict):
-        return "mach" if "mach" in value else "factor"
+        return "of-the-flow" if "mach" in value else "of-the-height"
     if isinstance(value, SoundSpeedMach):
-        return "mach"
-    return "factor" if isinstance(value, SoundSpeedFactor) else "value"
+        return "of-the-flow"
+    return "of-the-height" if isinstance(value, SoundSpeedFactor) else "value"

@@ -1,0 +1,121 @@
+"""The sound speed that follows the flow, and the Mach number."""
+
+import copy
+import json
+import logging
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mpmkit
+from mpmkit.case import parse_case
+from mpmkit.errors import CaseError
+from mpmkit.solver.simulation import Simulation
+from mpmkit.solver.sound import SLOWEST, largest_energy
+
+FAST = json.loads((Path(__file__).parents[1] / "cases" / "slump_fast.json").read_text(encoding="utf-8"))
+G = 9.81
+
+
+def fast(sound_speed, **changes):
+    data = copy.deepcopy(FAST) | {"name": "slump", "output": {"report": False}} | changes
+    data["bodies"][0]["material"]["sound_speed"] = sound_speed
+    return parse_case(data)
+
+
+def advance(simulation, until):
+    while simulation.time < until:
+        simulation.advance(until - simulation.time)
+
+
+def test_at_rest_a_mach_number_is_the_inverse_of_a_factor():
+    """c = √(2 g h) / mach: no part of a body at rest can fall faster than √(2 g h)."""
+    by_mach, by_factor = Simulation(fast({"mach": 0.1})), Simulation(fast({"factor": 10}))
+    # The body is as high as its particles' centres; its own top is half a box higher.
+    assert by_mach.particles.groups[0].sound_speed == pytest.approx(
+        by_factor.particles.groups[0].sound_speed, rel=0.03
+    )
+    assert fast({"mach": 0.1}).sound_speed(fast({"mach": 0.1}).bodies[0].material) == pytest.approx(
+        10 * math.sqrt(2 * G * 0.3)
+    )
+
+
+def test_the_mach_number_stays_below_what_was_asked_and_steps_grow_as_the_body_falls():
+    history = mpmkit.run(fast({"mach": 0.1}, until=1.5))
+    assert float(history.mach_number.max()) <= 0.1 * (1 + 1e-12)
+    assert float(history.mach_number.max()) > 0.04  # viscosity leaves half of the free fall
+    # The head falls from 0.3 m to about the height of the sheet, and √ of it is the sound speed.
+    expected = math.sqrt(0.3 / float(history.height[-1]))
+    assert float(history.time_step[-1] / history.time_step[0]) == pytest.approx(expected, rel=0.15)
+
+
+def test_the_slump_is_that_of_a_constant_sound_speed():
+    """The compressibility is the same part of the head at all times; the spread does not notice."""
+    follows, constant = (
+        mpmkit.run(fast(c, until=0.6)).spread_diameter for c in ({"mach": 0.1}, {"factor": 10})
+    )
+    assert np.abs(follows.values / constant.values - 1).max() < 0.01
+
+
+def test_energy_is_the_bernoulli_head_and_a_periodic_axis_has_no_potential():
+    simulation = Simulation(fast({"mach": 0.1}))
+    p, grid = simulation.particles, simulation.grid
+    p.velocity[:] = 0.0
+    p.velocity[7] = [3.0, 4.0]
+    height = p.position[:, 1] - p.position[:, 1].min()
+    expected = max(G * height.max(), G * height[7] + 12.5)
+    gravity = np.array([0.0, -G])
+    assert largest_energy(p, grid, gravity) == pytest.approx(expected, rel=1e-12)
+    grid.faces[1] = 3  # periodic
+    assert largest_energy(p, grid, gravity) == pytest.approx(12.5, rel=1e-12)
+
+
+def test_a_flow_without_gravity_goes_by_its_speed_and_keeps_a_tenth_of_the_sound():
+    data = copy.deepcopy(FAST) | {"name": "drop", "gravity": [0, 0], "until": 0.1}
+    data["bodies"][0]["velocity"] = [0.0, -2.0]
+    data["bodies"][0]["material"]["sound_speed"] = {"mach": 0.05}
+    simulation = Simulation(parse_case(data))
+    group = simulation.particles.groups[0]
+    assert group.sound_speed == pytest.approx(2.0 / 0.05)
+    simulation.particles.velocity[:] = 0.0
+    simulation.choose_time_step()
+    assert group.sound_speed == pytest.approx(SLOWEST * 2.0 / 0.05)
+
+
+@pytest.mark.parametrize(
+    ("sound_speed", "gravity", "sentence"),
+    [
+        ({"mach": 0.1}, [0, 0], "sound_speed is a Mach number, but gravity is .* and nothing moves"),
+        ({"mach": 1.5}, None, "sound_speed.mach is 1.5"),
+        ({"mach": 0}, None, "sound_speed.mach is 0"),
+        ({"mach": 0.1, "factor": 10}, None, "factor"),
+    ],
+)
+def test_a_bad_mach_number_is_met_with_one_sentence(sound_speed, gravity, sentence):
+    changes = {} if gravity is None else {"gravity": gravity}
+    with pytest.raises(CaseError, match=sentence) as error:
+        fast(sound_speed, **changes)
+    assert "\n" not in str(error.value)
+
+
+def test_a_flow_that_is_fast_against_its_sound_is_warned_of_once(caplog):
+    with caplog.at_level(logging.WARNING, logger="mpmkit"):
+        history = mpmkit.run(fast({"factor": 3}, until=0.4))
+    (warning,) = [r.getMessage() for r in caplog.records if "Mach" in r.getMessage()]
+    assert "a larger sound_speed" in warning
+    assert float(history.mach_number.max()) > 0.1
+    caplog.clear()
+    with caplog.at_level(logging.WARNING, logger="mpmkit"):
+        mpmkit.run(fast({"factor": 10}, until=0.4))
+    assert not caplog.records
+
+
+def test_energy_is_not_created_as_the_sound_speed_falls():
+    """Softening the material slowly stores work of gravity in it, and gives none back."""
+    history = mpmkit.run(fast({"mach": 0.1}, until=1.5))
+    total = (
+        history.kinetic_energy + history.potential_energy + history.strain_energy + history.compressive_energy
+    ).values
+    assert np.diff(total).max() < 1e-3 * (total[0] - total[-1])
