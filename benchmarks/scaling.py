@@ -85,9 +85,8 @@ def memory() -> None:
             simulation.advance()
             peak = max(peak, process.memory_info().rss)
         count = len(simulation.particles)
-        print(
-            f"| {name} | {count:,} | {(peak - before) / count:.0f} | {expected_bytes(case, count) / count:.0f} |"
-        )
+        grown, said = (peak - before) / count, expected_bytes(case, count) / count
+        print(f"| {name} | {count:,} | {grown:.0f} | {said:.0f} |")
 
 
 def overhead() -> None:

@@ -63,6 +63,29 @@ def test_expected_memory_is_that_of_the_arrays(file, overrides):
     assert expected_bytes(case, n) == pytest.approx(total, rel=0.25)
 
 
+@pytest.mark.parametrize("file", ["slump_ferreira.json", "slump_quarter_fine.json"])
+def test_a_particle_in_three_dimensions_takes_no_more_than_700_bytes(file):
+    """Nodes included; that ``plan`` says what the arrays take is asserted above."""
+    case = load_case(CASES / file)
+    particles = expected_particles(case)
+    assert expected_bytes(case, particles) / particles < 700
+
+
+def test_a_wider_domain_takes_no_more_nodes():
+    """The window over the material is all that is stored and all that is worked on."""
+    wide = json.dumps({"x": [-2.4, 2.4], "y": [-2.4, 2.4], "z": [0, 0.62]})
+    case, wider = (
+        load_case(CASES / "slump_ferreira.json", ["grid.cell_size=0.02", f"grid.domain={domain}"])
+        for domain in (json.dumps({"x": [-0.36, 0.36], "y": [-0.36, 0.36], "z": [0, 0.32]}), wide)
+    )
+    found = []
+    for each in (case, wider):
+        simulation = Simulation(each)
+        simulation.advance()
+        found.append(simulation.operations.window.shape)
+    assert found[0] == found[1]
+
+
 def test_a_kept_history_counts():
     data = json.loads((CASES / "slump.json").read_text())
     plain = expected_bytes(parse_case(data), 1000)

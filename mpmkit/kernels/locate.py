@@ -28,18 +28,20 @@ def locate(
         worst, who = HERE, -1
         for g in range(block_first.shape[0]):
             for p in range(block_first[g, b], block_first[g, b + 1]):
+                here = there = True
                 for d in range(dim):
                     x = position[p, d]
-                    # Also true of a NaN; and a box that is none would send the weights anywhere.
-                    if not (0.0 <= x <= extent[d] and 0.0 < half_size[p, d] < np.inf):
-                        if worst != LOST:
-                            worst, who = LOST, p
-                        continue
-                    cell = int(x * inverse_cell)
-                    low = max(window_low[d], block_cell[b, d] - 1)
-                    high = min(window_high[d], block_cell[b, d] + BLOCK_WIDTH)
-                    if (cell < low or cell > high) and worst == HERE:
-                        worst = STRAYED
+                    # Also false of a NaN; and a box that is none would send the weights anywhere.
+                    there &= (
+                        (x >= 0.0) & (x <= extent[d]) & (half_size[p, d] > 0.0) & (half_size[p, d] < np.inf)
+                    )
+                    cells = x * inverse_cell
+                    here &= cells >= max(window_low[d], block_cell[b, d] - 1)
+                    here &= cells < min(window_high[d], block_cell[b, d] + BLOCK_WIDTH) + 1
+                if not there and worst != LOST:
+                    worst, who = LOST, p
+                elif not here and worst == HERE:
+                    worst = STRAYED
         verdicts[b, 0], verdicts[b, 1] = worst, who
     worst, who = HERE, -1
     for b in range(blocks):
