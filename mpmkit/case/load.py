@@ -30,9 +30,9 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
     """
-    data = _read(path)
+    data = read_json(path)
     if isinstance(data, dict):
-        data.setdefault("name", _name_from(Path(path)))
+        data.setdefault("name", name_from(path))
     return parse_case(data, overrides, registry, source=str(path))
 
 
@@ -57,25 +57,30 @@ def parse_case(
         raise CaseError(f"{source}: {error}") from None
 
 
-def _read(path: str | Path) -> Any:
+def read_json(path: str | Path, what: str = "case") -> Any:
+    """The content of a JSON file, called ``what`` in the sentence about one that cannot be read.
+
+    Raises:
+        CaseError: it cannot be read, is not JSON, or has a key twice or a number that is not finite.
+    """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a byte-order mark
     except UnicodeDecodeError:
-        raise CaseError(f"{path}: the case file is not a UTF-8 text file") from None
+        raise CaseError(f"{path}: the {what} file is not a UTF-8 text file") from None
     except (OSError, ValueError) as error:  # ValueError: a path that no file can have
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError(f"{shown(str(path))}: the case file cannot be read: {reason}") from None
+        raise CaseError(f"{shown(str(path))}: the {what} file cannot be read: {reason}") from None
     if not text.strip():
-        raise CaseError(f"{path}: the case file is empty; it must hold a JSON object")
+        raise CaseError(f"{path}: the {what} file is empty; it must hold a JSON object")
     try:
         return decode(text)
     except json.JSONDecodeError as error:
         reason = f"{error.msg} at line {error.lineno}, column {error.colno}"
-        raise CaseError(f"{path}: the case file is not valid JSON: {reason}") from None
+        raise CaseError(f"{path}: the {what} file is not valid JSON: {reason}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 
 
-def _name_from(path: Path) -> str:
+def name_from(path: str | Path) -> str:
     """The stem of a file as the name of a case, which is more restricted than that of a file."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "-", path.stem).strip("-._")[:100] or "case"
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", Path(path).stem).strip("-._")[:100] or "case"

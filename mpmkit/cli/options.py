@@ -21,6 +21,14 @@ overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier r
 out = click.option(
     "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
 )
+workers = click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    help="Members to run at once; as many as this machine's cores hold unless told.",
+)
+scheduler = click.option(
+    "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."
+)
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 

@@ -1,0 +1,61 @@
+"""``mpmkit compare``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from . import options
+from .study import run_study
+
+
+@click.command("compare")
+@options.case_file
+@click.option(
+    "--vary",
+    multiple=True,
+    required=True,
+    metavar="PATH=A,B,…",
+    help="Values of one key to run side by side, such as scheme.order=usl,usf; repeat for a grid.",
+)
+@options.set_values
+@options.until
+@options.out
+@options.workers
+@options.threads
+@options.scheduler
+@options.quiet
+def command(
+    case: str,
+    vary: tuple[str, ...],
+    overrides: tuple[str, ...],
+    until: float | None,
+    out: str | None,
+    workers: int | None,
+    threads: int | None,
+    scheduler: str | None,
+    quiet: bool,
+) -> None:
+    """Run CASE with every combination of the values given, and gather them as a study does."""
+    from ..case.load import name_from, read_json
+    from ..case.overrides import apply_overrides
+    from ..errors import CaseError
+    from ..study import parse_study
+    from ..study.vary import parse_vary
+
+    data = read_json(case)
+    if not isinstance(data, dict):
+        raise CaseError(f"{case}: a case must be a JSON object")
+    data = apply_overrides(data, options.with_until(overrides, until))
+    data.setdefault("name", name_from(case))
+    study = parse_study(
+        {
+            "name": f"compare-{Path(case).stem}",
+            "case": json.loads(json.dumps(data)),
+            "vary": parse_vary(vary),
+        },
+        source="--vary",
+    )
+    run_study(study, out, workers, threads, scheduler, quiet)

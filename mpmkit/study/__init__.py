@@ -1,0 +1,9 @@
+"""Studies: variations of a case, run side by side, and what came of them in one dataset."""
+
+from .collect import collect
+from .execute import execute
+from .load import load_study, parse_study
+from .members import Member, members_of
+from .model import Study
+
+__all__ = ["Member", "Study", "collect", "execute", "load_study", "members_of", "parse_study"]

@@ -1,0 +1,37 @@
+"""The same study on a cluster: Dask's distributed scheduler as an executor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+
+from ..errors import CaseError
+
+PATIENCE = 30
+"""Seconds to wait for the scheduler."""
+RETRIES = 3
+"""Times that a member is given to another worker when the one that ran it is lost."""
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Executor]:
+    """An executor on the workers of a scheduler; they need mpmkit, and the same plug-ins.
+
+    A worker that dies takes nothing with it: the scheduler gives its member to another.
+
+    Raises:
+        CaseError: distributed is not installed, or there is no scheduler at the address.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise CaseError(f"--scheduler {address} needs distributed: pip install 'mpmkit[cluster]'") from None
+    try:
+        client = Client(address, timeout=PATIENCE)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise CaseError(f"--scheduler {address}: no scheduler answers there: {error}") from None
+    try:
+        yield client.get_executor(pure=False, retries=RETRIES)
+    finally:
+        client.close()

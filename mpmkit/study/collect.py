@@ -1,0 +1,96 @@
+"""Everything that a study gave, in one dataset."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import xarray
+
+from .. import __version__
+from .members import Member, dimensions, shown
+from .model import Study
+from .store import Store
+
+ROWS = 201
+"""Times at which histories are compared."""
+FIGURES = {
+    "t500": ("s", "time to a spread of 500 mm"),
+    "final_spread": ("m", "spread diameter at the end"),
+    "final_slump": ("m", "slump at the end"),
+    "final_height": ("m", "largest height at the end"),
+    "simulated_time": ("s", "simulated time"),
+    "particles": ("1", "particles at the end"),
+}
+"""Figures of a summary."""
+COSTS = {
+    "wall_seconds": ("s", "wall time of the run"),
+    "cpu_seconds": ("s", "CPU time of the run"),
+    "steps": ("1", "steps"),
+    "particle_steps": ("1", "particle-steps"),
+    "memory_bytes": ("B", "memory, as plan counts it"),
+}
+
+
+def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset:
+    """One dataset of all members: a dimension for each one varied, and time.
+
+    Histories are taken at common times, linearly between rows; after a member's end they are not a number.
+    What a member has not run, or does not have, is not a number, and its ``fate`` is empty.
+    """
+    axes = dimensions(study)
+    shape = tuple(len(labels) for labels in axes.values())
+    time = np.linspace(0.0, max(member.case.until for member in members), ROWS)
+    names = tuple(axes)
+    fields: dict[str, tuple] = {
+        name: (names, np.full(shape, np.nan), {"units": units, "long_name": text})
+        for name, (units, text) in (FIGURES | COSTS).items()
+    }
+    fields["fate"] = (names, np.full(shape, "", dtype=object), {"long_name": "how the run ended"})
+    fields["sentence"] = (
+        names,
+        np.full(shape, "", dtype=object),
+        {"long_name": "what there is to say of it"},
+    )
+    for place, member in zip(np.ndindex(shape), members, strict=True):
+        record = store.outcome(member)
+        if record is None:
+            continue
+        fields["fate"][1][place] = record["fate"]
+        fields["sentence"][1][place] = record["sentence"]
+        for name in FIGURES:
+            fields[name][1][place] = _number(record["summary"].get(name))
+        for name in COSTS:
+            fields[name][1][place] = _number(record["cost"].get(name))
+        history = store.history(member)
+        if history is not None:
+            _add_history(fields, history, (*names, "time"), place, time)
+    coordinates: dict[str, Any] = {name: [shown(label) for label in labels] for name, labels in axes.items()}
+    dataset = xarray.Dataset(fields, coordinates | {"time": ("time", time, {"units": "s"})})
+    dataset.attrs = {
+        "title": study.name,
+        "description": study.description,
+        "study": json.dumps(study.model_dump(mode="json")),
+        "mpmkit": __version__,
+    }
+    return dataset
+
+
+def _add_history(fields: dict, path, names: tuple, place: tuple, time: np.ndarray) -> None:
+    with xarray.open_dataset(path) as history:
+        history.load()
+    end = float(history.time[-1])
+    for name, series in history.data_vars.items():
+        if series.dims != ("time",):
+            continue
+        if name not in fields:
+            shape = next(iter(fields.values()))[1].shape
+            fields[str(name)] = (names, np.full((*shape, len(time)), np.nan), dict(series.attrs))
+        values = np.interp(time, history.time.values, series.values)
+        fields[str(name)][1][place] = np.where(time <= end * (1 + 1e-9), values, np.nan)
+
+
+def _number(value: Any) -> float:
+    return math.nan if value is None else float(value)

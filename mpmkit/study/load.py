@@ -1,0 +1,42 @@
+"""Reading study files, to the standard of case files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from ..case.load import name_from, read_json
+from ..case.messages import explain
+from ..errors import CaseError
+from ..registry import installed
+from .model import Study
+
+
+def load_study(path: str | Path) -> Study:
+    """Read and validate a study file; the path of its case counts from there.
+
+    Raises:
+        CaseError: the study cannot be read, or says something that no study can.
+    """
+    data = read_json(path, "study")
+    if isinstance(data, dict):
+        data.setdefault("name", name_from(path))
+        if isinstance(data.get("case"), str):
+            data["case"] = str(Path(path).parent / data["case"])
+    return parse_study(data, source=str(path))
+
+
+def parse_study(data: Any, source: str = "study") -> Study:
+    """Validate a study given as the content of a JSON file; see ``load_study``."""
+    if not isinstance(data, dict):
+        raise CaseError(f"{source}: a study must be a JSON object")
+    data = {key: value for key, value in data.items() if key != "$schema"}
+    try:
+        return Study.model_validate_json(json.dumps(data, allow_nan=False))
+    except ValidationError as error:
+        raise CaseError(f"{source}: {explain(error, data, Study, installed())}") from None
+    except (TypeError, ValueError, RecursionError) as error:
+        raise CaseError(f"{source}: {error}") from None

@@ -1,0 +1,144 @@
+"""The members of a study: one case each, and its place along the dimensions that are varied."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import itertools
+import json
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from .. import __version__
+from ..case import parse_case
+from ..case.load import name_from, read_json
+from ..case.model import Case
+from ..errors import CaseError
+from ..provenance import plugins_used, resolved
+from ..registry import installed
+from .model import Changes, Study
+from .refit import with_law
+
+MOST = 10_000
+"""Members of a study, far more than anybody waits for."""
+MEMBER = "member"
+"""The one dimension of a list of members."""
+
+
+@dataclass(frozen=True)
+class Member:
+    """One variation."""
+
+    labels: dict[str, Any]
+    """where it stands, by dimension: a value, or the name of a set of values"""
+    data: dict[str, Any]
+    """its case, as the content of a case file"""
+    case: Case
+    remarks: list[str] = field(default_factory=list)
+    """what was done to the case that nobody asked for in so many words"""
+
+    @property
+    def title(self) -> str:
+        """What it is called in figures and messages."""
+        return ", ".join(shown(label) for label in self.labels.values())
+
+    @property
+    def slug(self) -> str:
+        """Name of its directory: readable, and its own."""
+        readable = re.sub(r"[^A-Za-z0-9.-]+", "-", self.title).strip("-.")[:60]
+        own = hashlib.sha256(json.dumps(self.labels, sort_keys=True).encode()).hexdigest()[:8]
+        return f"{readable}-{own}"
+
+    @property
+    def digest(self) -> str:
+        """Of everything that its result depends on: the case and the versions of what runs it."""
+        known = {"case": resolved(self.case), "mpmkit": __version__, "plugins": plugins_used(self.case)}
+        return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest()
+
+
+def shown(label: Any) -> str:
+    """A label as a person writes it."""
+    return label if isinstance(label, str) else json.dumps(label, ensure_ascii=False)
+
+
+def dimensions(study: Study) -> dict[str, list[Any]]:
+    """Labels along each dimension of a study."""
+    if study.members:
+        return {MEMBER: list(study.members)}
+    return {name: list(choices) for name, choices in study.vary.items()}
+
+
+def members_of(study: Study) -> list[Member]:
+    """All members, the last dimension running fastest.
+
+    Raises:
+        CaseError: the case of a member is not valid; the sentence names the member.
+    """
+    base = read_json(study.case) if isinstance(study.case, str) else dict(study.case)
+    if not isinstance(base, dict):
+        raise CaseError(f"{study.case}: a case must be a JSON object")
+    if isinstance(study.case, str):
+        base.setdefault("name", name_from(study.case))
+    axes = dimensions(study)
+    count = 1
+    for labels in axes.values():
+        count *= len(labels)
+    if count > MOST:
+        raise CaseError(f"the study has {count} members; it may have {MOST:,} at most")
+    # A name for the path of a member, not for its own: every member's run is kept under its labels.
+    return [
+        _member(study, base, dict(zip(axes, labels, strict=True)))
+        for labels in itertools.product(*axes.values())
+    ]
+
+
+def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Member:
+    changes: Changes = dict(study.common)
+    for dimension, label in labels.items():
+        changes |= _changes(study, dimension, label)
+    base, remarks = _with_laws(base, changes)
+    overrides = [f"{path}={json.dumps(value)}" for path, value in changes.items()]
+    title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
+    try:
+        case = parse_case(base, overrides, source="its case")
+    except CaseError as error:
+        raise CaseError(f"study '{study.name}', member {title}: {error}") from None
+    return Member(labels, resolved(case), case, remarks)
+
+
+def _with_laws(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:
+    """The case with each material made over where a change names another law and no more.
+
+    A law that comes with all its parameters, as a whole material or key by key, is left as it is given.
+    """
+    remarks: list[str] = []
+    base = copy.deepcopy(base)
+    for path, name in changes.items():
+        material = _at(base, path.removesuffix(".law"))
+        if path.endswith(".material.law") and isinstance(material, dict) and isinstance(name, str):
+            given = {other.rpartition(".")[2] for other in changes if other.startswith(path[:-3])}
+            made, said = with_law(material, name, installed())
+            material.clear()
+            material.update(made)
+            remarks += [] if given - {"law"} else said
+    return base, remarks
+
+
+def _at(data: Any, path: str) -> Any:
+    """What is at a path; None if nothing is."""
+    for key in path.split("."):
+        if isinstance(data, dict):
+            data = data.get(key)
+        elif isinstance(data, list) and key.isdigit() and int(key) < len(data):
+            data = data[int(key)]
+        else:
+            return None
+    return data
+
+
+def _changes(study: Study, dimension: str, label: Any) -> Changes:
+    if study.members:
+        return study.members[label]
+    choices = study.vary[dimension]
+    return choices[label] if isinstance(choices, dict) else {dimension: label}

@@ -1,0 +1,82 @@
+"""The directory of a study: what its members gave, member by member, so that none is run twice."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from ..errors import CaseError
+from ..output import write_json
+from ..output.atomic import cannot_write, replacing
+from .members import Member
+from .model import Study
+from .table import table
+from .work import Outcome
+
+
+class Store:
+    """``study.json``, ``results.nc``, ``table.md``, figures, and ``members/`` with a directory each."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.study = path / "study.json"
+        self.results = path / "results.nc"
+
+    def open(self, study: Study) -> None:
+        """Make the directory, or go on in one that holds a study.
+
+        Raises:
+            CaseError: there is something else in it.
+            OutputError: it cannot be written.
+        """
+        try:
+            if self.path.exists() and not self.study.exists() and any(self.path.iterdir()):
+                raise CaseError(f"'{self.path}' exists and holds no study; choose another with --out")
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+        write_json(self.study, study.model_dump(mode="json"))
+
+    def directory(self, member: Member) -> Path:
+        return self.path / "members" / member.slug
+
+    def keep(self, member: Member, outcome: Outcome) -> None:
+        """Write what became of a member; its ``member.json`` comes last, and says that it is complete."""
+        directory = self.directory(member)
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(directory, error) from error
+        with replacing(directory / "history.nc") as partial:
+            partial.write_bytes(outcome.history)
+        write_json(directory / "case.json", member.data)
+        record = asdict(outcome)
+        record.pop("history")
+        write_json(directory / "member.json", {"labels": member.labels, "digest": member.digest, **record})
+
+    def outcome(self, member: Member) -> dict[str, Any] | None:
+        """What is kept of a member that ran, of this very case with these versions; None if it has to run."""
+        try:
+            record = json.loads((self.directory(member) / "member.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        return record if record.get("digest") == member.digest else None
+
+    def write(self, dataset: xarray.Dataset) -> None:
+        """Write everything there is, ``results.nc``, ``table.md`` and the figures."""
+        from .figures import draw
+
+        with replacing(self.results) as partial:
+            dataset.to_netcdf(partial, engine="netcdf4")
+        with replacing(self.path / "table.md") as partial:
+            partial.write_text(table(dataset), encoding="utf-8")
+        draw(dataset, self.path)
+
+    def history(self, member: Member) -> Path | None:
+        """Its history; None where it left none."""
+        path = self.directory(member) / "history.nc"
+        return path if path.exists() and path.stat().st_size else None
