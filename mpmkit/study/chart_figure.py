@@ -1,0 +1,64 @@
+"""Figure: error against cost, both on logarithmic axes, with Pareto's front."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ..output.atomic import replacing
+from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
+from .chart import Chart
+from .collect import COSTS
+
+LEAST_ERROR = 1e-6
+"""Errors below it are drawn there: what is exact has no place on a logarithmic axis."""
+
+
+def draw(chart: Chart, title: str, path: Path) -> None:
+    """Draw a chart into a PNG file."""
+    with figure_style():
+        figure = Figure(figsize=(10.5, 6.4), layout="constrained")
+        axes = figure.add_subplot()
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        front = chart.front
+        others = [point for point in chart.points if point not in front]
+        for points, colour, size in ((others, GREY, 5), (front, BLUE, 8)):
+            axes.plot(
+                [point.cost for point in points],
+                [max(point.error, LEAST_ERROR) for point in points],
+                "o",
+                color=colour,
+                markersize=size,
+                markeredgecolor="white",
+                linestyle="none",
+            )
+        axes.step(
+            [point.cost for point in front],
+            [max(point.error, LEAST_ERROR) for point in front],
+            where="post",
+            color=VERMILION,
+            linewidth=1.2,
+            linestyle="--",
+            label="Pareto's front",
+            zorder=0,
+        )
+        for number, point in enumerate(front, start=1):
+            axes.annotate(
+                str(number),
+                (point.cost, max(point.error, LEAST_ERROR)),
+                xytext=(6, 5),
+                textcoords="offset points",
+                color=BLUE,
+                fontweight="bold",
+            )
+        units, text = COSTS[chart.cost]
+        axes.set_xlabel(f"{text} ({units})" if units != "1" else text)
+        axes.set_ylabel(f"error of {chart.variable.replace('_', ' ')}, relative to {chart.against}")
+        axes.set_title(f"{title}: accuracy against cost", loc="left")
+        names = "\n".join(f"{number}  {point.title}" for number, point in enumerate(front, start=1))
+        figure.text(1.01, 0.97, names, va="top", ha="left", fontsize=9, color=BLUE)
+        axes.legend(loc="upper right")
+        with replacing(path) as partial:
+            figure.savefig(partial, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.12)
