@@ -11,22 +11,29 @@ from .blame import blaming_plugins
 from .case.model import Case
 from .errors import CaseError, GuardStop
 from .memory import expected_bytes, require_memory
+from .pilot import Growth, pilot
 from .solver.simulation import Simulation
 from .threads import use_threads
 
 TRIAL_SECONDS = 1.0
 """How long the scene is run to measure its speed on this machine, after one step to compile."""
+PILOT_SECONDS = 10.0
+"""How long its coarse copy is run at the most, to see how the cost grows on the way."""
+WORTH_A_PILOT = 1.0
+"""Seconds that a run takes at the least, for a pilot to be worth its own."""
 
 
 def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     """Particles, nodes, steps, memory and expected time of a run.
 
-    The time is measured, not guessed: the scene itself is set up and run for about a second.
+    The time is measured, not guessed: the scene itself is set up and run for about a second, and where
+    particles may be split or the sound speed follows the flow, a coarse copy is run to its end (``pilot``).
 
     Returns:
-        ``particles``, ``nodes`` (along each axis, ghosts included), ``steps``, ``time_step`` (s), ``limits``
-        (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body each), ``memory_bytes``,
-        ``expected_seconds``, ``remarks`` (of the laws), ``warnings``.
+        ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
+        ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
+        each, at the start), ``memory_bytes`` (at the end), ``expected_seconds``, ``remarks`` (of the laws),
+        ``warnings``.
 
     Raises:
         CaseError: the case cannot be run.
@@ -42,28 +49,51 @@ def _plan(simulation: Simulation, threads: int | None) -> dict[str, Any]:
     use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
-    warnings = simulation.warnings()
-    if case.scheme.splitting:
-        warnings.append("particles that scheme.splitting adds later are not counted in memory and time")
+    warnings, remarks = simulation.warnings(), simulation.remarks()
     if not math.isfinite(case.until / step):
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
         )
-    steps = math.ceil(case.until / step)
     seconds_per_step, stopped = _trial(simulation)
+    growth = _growth(simulation, case.until / step * seconds_per_step)
+    steps = math.ceil(case.until / step * growth.steps)
+    at_end = round(particles * growth.last_particles)
     return {
         "particles": particles,
+        "particles_at_end": at_end,
         "nodes": list(simulation.grid.nodes),
         "steps": steps,
         "time_step": step,
         "limits": {name: limit if math.isfinite(limit) else None for name, limit in limits.as_dict().items()},
         "limited_by": limited_by,
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
-        "memory_bytes": expected_bytes(case, particles),
-        "expected_seconds": steps * seconds_per_step,
-        "remarks": simulation.remarks(),
+        "memory_bytes": expected_bytes(case, at_end),
+        "expected_seconds": steps * _mean_seconds(seconds_per_step, particles, growth),
+        "remarks": remarks,
         "warnings": warnings + stopped,
     }
+
+
+def _growth(simulation: Simulation, seconds: float) -> Growth:
+    """What a pilot says of particles and steps to come; nothing of a scene in which neither changes."""
+    case = simulation.case
+    follows = any(group.mach is not None for group in simulation.particles.groups)
+    found = None
+    if (case.scheme.splitting or follows) and seconds > WORTH_A_PILOT:
+        found = pilot(case, min(PILOT_SECONDS, seconds))
+    return found or Growth(1.0, 1.0, 1.0, math.nan, math.nan)
+
+
+def _mean_seconds(seconds_per_step: float, particles: int, growth: Growth) -> float:
+    """Seconds a step takes in the mean over a run, a + b N, with N particles: b N is what grows.
+
+    a, what a step costs whatever the number of particles, is told by the pilot, which has few.
+    """
+    per_particle = seconds_per_step / particles
+    if growth.mean_particles < particles / 2:
+        per_particle = (seconds_per_step - growth.seconds_per_step) / (particles - growth.mean_particles)
+        per_particle = min(max(per_particle, 0.0), seconds_per_step / particles)
+    return seconds_per_step + per_particle * particles * (growth.particles - 1.0)
 
 
 def _trial(simulation: Simulation) -> tuple[float, list[str]]:

@@ -35,7 +35,7 @@ def command(
         return
     speeds = [speed for speed in cost["sound_speed"] if speed is not None]
     lines = [
-        f"particles      {cost['particles']:,}",
+        f"particles      {cost['particles']:,}{_at_end(cost)}",
         f"nodes          {' × '.join(f'{n:,}' for n in cost['nodes'])}",
         f"time step      {cost['time_step']:.4g} s, set by the {cost['limited_by']} limit",
         *(f"  {name:<12} {limit:.4g} s" for name, limit in cost["limits"].items() if limit is not None),
@@ -47,6 +47,11 @@ def command(
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
     click.echo("\n".join(lines))
+
+
+def _at_end(cost: dict) -> str:
+    more = cost["particles_at_end"]
+    return f", about {more:,} at the end" if more > cost["particles"] else ""
 
 
 def _counted(number: int) -> str:

@@ -68,8 +68,15 @@ class Simulation:
         self.operations.mean_speed = self._mean_speed()
 
     def remarks(self) -> list[str]:
-        """What the laws have to say of themselves."""
-        return [sentence for group in self.particles.groups for sentence in group.remarks]
+        """What the laws have to say of themselves, and what will change on the way."""
+        said = [sentence for group in self.particles.groups for sentence in group.remarks]
+        for group in self.particles.groups:
+            if group.mach is not None:
+                said.append(
+                    f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
+                    "a modulus that is made of it follows as well"
+                )
+        return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""

@@ -29,13 +29,14 @@ def follow_flow(particles: Particles, grid: Grid, gravity: np.ndarray, first: li
 
 
 def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> float:
-    """Largest energy of a particle, of its speed and of its height above the lowest one, J/kg.
+    """Largest energy of a particle, of its speed and of the height of its box above the lowest one, J/kg.
 
     Along a periodic axis the work of gravity has no potential.
     """
-    potential = particles.position @ -np.where(grid.periodic, 0.0, gravity)
+    downwards = np.where(grid.periodic, 0.0, gravity)
+    potential, of_box = -particles.position @ downwards, particles.box @ np.abs(downwards)
     kinetic = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
-    return float((potential + kinetic).max() - potential.min())
+    return float((potential + of_box + kinetic).max() - (potential - of_box).min())
 
 
 def mach_number(particles: Particles, largest_speed: float) -> float:

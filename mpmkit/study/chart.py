@@ -51,8 +51,8 @@ def chart(
 ) -> Chart:
     """Errors and costs of the members that finished.
 
-    The error of a history is its largest departure from the reference's, over the times that both have, as a part of
-    the reference's largest value; that of a figure, such as ``t500``, is relative to it.
+    The error of a history is its largest departure from the reference's, over the times that both have, as a
+    part of the reference's largest value; that of a figure, such as ``t500``, is relative to it.
 
     Args:
         dataset: of ``collect``.
