@@ -1,7 +1,8 @@
 """A pilot: the same scene on coarse cells, run to its end to see how its cost grows on the way.
 
-Particles that are split and steps that lengthen or shorten as the material flows cannot be known from the scene
-at rest; but they are the same, in proportion, on cells four or eight times as wide, at a small part of the cost.
+Particles that are split and steps that lengthen or shorten as the material flows cannot be known from the
+scene at rest; but they are the same, in proportion, on cells four or eight times as wide, at a small part of
+the cost.
 """
 
 from __future__ import annotations

@@ -32,13 +32,15 @@ class Simulation:
     ...     simulation.advance()
     """
 
-    def __init__(self, case: Case, particles: Particles | None = None) -> None:
+    def __init__(self, case: Case, particles: Particles | None = None, fraction: float | None = None) -> None:
         """
         Args:
             case: a validated case.
-            particles: a state to go on from; the case's bodies at rest in their places unless told.
+            particles: a state to go on from; the case's bodies in their places unless told.
+            fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
         """
         self.case = case
+        self.fraction = fraction
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
         self.operations = SceneOperations(
@@ -63,7 +65,7 @@ class Simulation:
         speed = float(largest_speed(p.velocity, np.empty(len(p) // CHUNK + 1)))
         self.mach_number = mach_number(p, speed)
         self.limits = limits(p.groups, self.grid.cell_size, speed)
-        self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits)
+        self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = self._mean_speed()
 

@@ -56,14 +56,17 @@ def borne_by(scheme: Scheme) -> dict[str, float]:
     }
 
 
-def choose_step(scheme: Scheme, found: Limits) -> tuple[float, str]:
+def choose_step(scheme: Scheme, found: Limits, fraction: float | None = None) -> tuple[float, str]:
     """The step, s, and the name of the limit that sets it.
 
     It is ``time_step.fraction`` of the smallest limit that is not ignored, and no more of any than the
-    schemes bear.
+    schemes bear; with a ``fraction`` of its own it is that part, whatever they bear.
     """
     settings, borne = scheme.time_step, borne_by(scheme)
-    steps = {name: min(settings.fraction, borne[name]) * limit for name, limit in found.as_dict().items()}
+    steps = {
+        name: limit * (min(settings.fraction, borne[name]) if fraction is None else fraction)
+        for name, limit in found.as_dict().items()
+    }
     kept = {name: step for name, step in steps.items() if name not in settings.ignore}
     name = min(kept, key=kept.__getitem__, default="none")
     return kept.get(name, math.inf), name

@@ -1,0 +1,112 @@
+"""``mpmkit stability``."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import click
+
+from . import options
+
+
+def _names(kind: str):
+    return click.option(
+        f"--{kind}",
+        metavar="A,B,…",
+        help=f"Names of the plug-ins of kind {kind} to try; the case's own unless told.",
+    )
+
+
+@click.command("stability")
+@options.case_file
+@_names("shape")
+@_names("order")
+@_names("velocity")
+@_names("volumetric")
+@_names("law")
+@options.set_values
+@options.until
+@options.out
+@options.as_json
+def command(
+    case: str,
+    shape: str | None,
+    order: str | None,
+    velocity: str | None,
+    volumetric: str | None,
+    law: str | None,
+    overrides: tuple[str, ...],
+    until: float | None,
+    out: str | None,
+    as_json: bool,
+) -> None:
+    """Find the largest stable time step of CASE for every combination of the schemes named.
+
+    A step is stable if it creates no energy and no momentum, and leads where a fine solution leads.
+    """
+    from dataclasses import asdict
+
+    from ..case.load import name_from, read_json
+    from ..case.overrides import apply_overrides
+    from ..errors import CaseError
+    from ..stability import combinations, critical_fraction
+    from .display import say
+
+    data = read_json(case)
+    if not isinstance(data, dict):
+        raise CaseError(f"{case}: a case must be a JSON object")
+    data = apply_overrides(data, options.with_until(overrides, until))
+    data.setdefault("name", name_from(case))
+    given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
+    chosen = {kind: names.split(",") for kind, names in given.items() if names}
+    rows = []
+    for labels, combination in list(combinations(data, chosen)):
+        found = critical_fraction(combination)
+        rows.append(labels | asdict(found))
+        if not as_json:
+            say(f"{', '.join(labels.values()) or data['name']}: {_stable(rows[-1])}")
+    if as_json:
+        finite = [{k: None if v == math.inf else v for k, v in row.items()} for row in rows]
+        click.echo(json.dumps(finite, indent=2, ensure_ascii=False))
+    else:
+        click.echo(_table(list(chosen), rows))
+    from ..stability.figure import draw
+
+    directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
+    path = draw(rows, list(chosen), str(data["name"]), directory)
+    if not as_json:
+        click.echo(f"map in {path}")
+
+
+def _stable(row: dict) -> str:
+    if row["unstable"] == math.inf:
+        return f"stable up to {row['fraction']:.3g} of the {row['limit']} limit, the largest tried"
+    if not row["fraction"]:
+        return f"unstable at {row['unstable']:.3g} of the {row['limit']} limit, the smallest tried"
+    return f"stable up to {row['fraction']:.3g} of the {row['limit']} limit; beyond: {row['broken']}"
+
+
+def _table(kinds: list[str], rows: list[dict]) -> str:
+    headings = [
+        *kinds,
+        "limit",
+        "largest stable fraction",
+        "smallest unstable",
+        "what breaks",
+        "schemes take at most",
+    ]
+    lines = [f"| {' | '.join(headings)} |", f"|{'---|' * len(headings)}"]
+    for row in rows:
+        beyond = "–" if row["unstable"] == math.inf else f"{row['unstable']:.3g}"
+        cells = [
+            *(row[kind] for kind in kinds),
+            row["limit"],
+            f"{row['fraction']:.3g}",
+            beyond,
+            row["broken"] or "–",
+            f"{row['declared']:g}",
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)

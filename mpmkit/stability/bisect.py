@@ -1,0 +1,66 @@
+"""The largest stable fraction of the critical step, by bisection."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..case.model import Case
+from ..errors import MpmkitError
+from ..solver.simulation import Simulation
+from ..solver.time_step import borne_by
+from .judge import Criteria
+from .trial import trace
+
+FINE = 0.05
+"""Fraction of the fine solution, which is also the smallest that is tried."""
+LARGEST = 2.0
+"""Largest fraction that is tried: beyond it no explicit scheme is expected to be of use."""
+CLOSE = 1.06
+"""Ratio of the bracket's ends at which the search is over."""
+
+
+@dataclass(frozen=True)
+class Critical:
+    """What was found for a scheme."""
+
+    fraction: float
+    """largest fraction found stable, of the smallest limit that the case does not ignore"""
+    unstable: float
+    """smallest fraction found unstable; infinite where none is"""
+    broken: str
+    """the criterion that this one broke"""
+    limit: str
+    """which limit the fractions are of"""
+    declared: float
+    """fraction that the schemes say they bear"""
+
+
+def critical_fraction(case: Case, criteria: Criteria | None = None) -> Critical:
+    """Bisect the time step of a case between ``FINE`` and ``LARGEST`` of its limit.
+
+    Raises:
+        CaseError: the case cannot be run.
+    """
+    criteria = criteria or Criteria()
+    simulation = Simulation(case, fraction=FINE)
+    limit = simulation.limited_by
+    declared = borne_by(case.scheme)[limit]
+    fine = trace(case, FINE)
+    if fine.stopped_by is not None:
+        return Critical(0.0, FINE, "guard", limit, declared)
+    low, high, broken = FINE, math.inf, ""
+    tried = LARGEST
+    while high / low > CLOSE:
+        try:
+            found = criteria.broken(case, trace(case, tried), fine)
+        except MpmkitError:
+            found = "guard"
+        if found is None:
+            low = tried
+            if tried == LARGEST:
+                break
+        else:
+            high, broken = tried, found
+        tried = math.sqrt(low * high) if math.isfinite(high) else LARGEST
+    return Critical(low, high, broken, limit, declared)
