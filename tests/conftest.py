@@ -3,3 +3,13 @@
 import os
 
 os.environ.setdefault("NUMBA_NUM_THREADS", "2")
+
+import numba
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def one_thread():
+    """One thread unless a test asks for more: the scenes are small, and on a busy machine two that wait for
+    each other at the end of every loop can take a hundred times as long."""
+    numba.set_num_threads(1)

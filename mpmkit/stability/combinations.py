@@ -33,8 +33,8 @@ def combinations(data: dict[str, Any], chosen: dict[str, list[str]]) -> Iterator
         for name in names:
             if name not in known:
                 raise CaseError(f"--{kind} {name}: it must be one of {', '.join(sorted(known))}")
-    for names in itertools.product(*chosen.values()):
-        labels = dict(zip(chosen, names, strict=True))
+    for combination in itertools.product(*chosen.values()):
+        labels = dict(zip(chosen, combination, strict=True))
         made = {**data, "bodies": [dict(body) for body in data.get("bodies", [])]}
         for body in made["bodies"]:
             if "law" in labels and isinstance(body.get("material"), dict):

@@ -12,6 +12,12 @@ from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
 
 BREAKS = {"guard": "X", "energy": "^", "momentum": "s", "distance": "D"}
 """Marker of the smallest unstable step, by the criterion that it broke."""
+WRONG = {
+    "guard": "stopped by a guard",
+    "energy": "creates energy",
+    "momentum": "creates momentum",
+    "distance": "leads elsewhere",
+}
 
 
 def draw(rows: list[dict], kinds: list[str], title: str, directory: Path) -> Path:
@@ -47,9 +53,7 @@ def draw(rows: list[dict], kinds: list[str], title: str, directory: Path) -> Pat
         axes.plot([], [], color="black", linewidth=1.6, label="what the schemes take at most")
         for name, marker in BREAKS.items():
             if any(row["broken"] == name for row in rows):
-                axes.plot(
-                    [], [], marker=marker, color=VERMILION, linestyle="none", label=f"{name} goes wrong"
-                )
+                axes.plot([], [], marker=marker, color=VERMILION, linestyle="none", label=WRONG[name])
         axes.axvline(1.0, color=GREY, linewidth=1, linestyle=":")
         figure.legend(loc="outside lower center", ncols=3)
         with replacing(path) as partial:
