@@ -1,0 +1,133 @@
+"""The largest stable step: how it is judged, and what is found of schemes whose limits are known."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from mpmkit.case import parse_case
+from mpmkit.cli import main
+from mpmkit.errors import CaseError
+from mpmkit.solver.simulation import Simulation
+from mpmkit.stability import Criteria, combinations, critical_fraction
+from mpmkit.stability.judge import distance
+from mpmkit.stability.trial import Trace, trace
+
+COLUMN = {
+    "name": "column",
+    "space": "plane-strain",
+    "until": 0.25,
+    "grid": {
+        "cell_size": 0.1,
+        "domain": {"x": [0, 1], "z": [0, 1]},
+        "faces": {"z_min": "slip", "x_min": "slip"},
+    },
+    "bodies": [
+        {
+            "shape": {"kind": "box", "lower": [0, 0], "upper": [0.5, 0.5]},
+            "material": {"law": "newtonian", "density": 1000, "viscosity": 10, "sound_speed": 20},
+        }
+    ],
+    "scheme": {"velocity": "flip", "volumetric": "own", "order": "musl"},
+}
+FREE = COLUMN | {"grid": COLUMN["grid"] | {"faces": {}}, "gravity": [0, 0], "until": 0.05}
+
+
+def falling(rows=11, mass=2.0):
+    """Two particles in free fall without gravity: nothing is created."""
+    time = np.linspace(0, 1, rows)
+    position = np.stack([np.stack([time, time], axis=1)] * 2, axis=1)
+    momentum = np.tile([mass, mass], (rows, 1))
+    energy = np.full(rows, mass)
+    return Trace(time, energy, energy.copy(), momentum, position, np.full(2, mass / 2), None)
+
+
+def broken(found, fine=None, data=FREE):
+    return Criteria().broken(parse_case(data), found, fine or falling())
+
+
+def test_what_a_fine_solution_does_itself_is_stable():
+    assert broken(falling()) is None
+
+
+def test_energy_from_nowhere():
+    energy = falling().energy * np.linspace(1, 1.02, 11)
+    assert broken(dataclasses.replace(falling(), energy=energy)) == "energy"
+    lost = falling().energy * np.linspace(1, 0.98, 11)
+    assert broken(dataclasses.replace(falling(), energy=lost)) is None  # that is dissipation
+
+
+def test_momentum_from_nowhere_where_nothing_acts_from_outside():
+    momentum = falling().momentum.copy()
+    momentum[5:] *= 1.001
+    found = dataclasses.replace(falling(), momentum=momentum)
+    assert broken(found) == "momentum"
+    assert broken(found, data=COLUMN | {"gravity": [0, 0]}) is None  # a wall may give it
+
+
+def test_where_it_leads():
+    moved = falling().position * np.array([1.2, 1.0])
+    found = dataclasses.replace(falling(), position=moved)
+    assert distance(found, falling()) == pytest.approx(0.2 / math.sqrt(2))
+    assert broken(found) == "distance"
+
+
+def test_a_guard_and_a_short_run():
+    assert broken(dataclasses.replace(falling(), stopped_by="non-finite")) == "guard"
+    energy = falling().energy.copy()
+    energy[-1] = np.nan
+    assert broken(dataclasses.replace(falling(), energy=energy)) == "guard"
+
+
+def test_a_fraction_is_taken_whatever_the_schemes_bear():
+    case = parse_case(COLUMN, ["scheme.order=usl", "scheme.time_step.fraction=1"])
+    kept, tried = Simulation(case), Simulation(case, fraction=0.9)
+    assert kept.time_step == pytest.approx(0.4 * kept.limits.acoustic)
+    assert tried.time_step == pytest.approx(0.9 * kept.limits.acoustic)
+
+
+def test_a_trace_looks_at_the_run_at_equal_times():
+    found = trace(parse_case(COLUMN), 0.3)
+    assert np.allclose(np.diff(found.time), 0.25 / (len(found.time) - 1))
+    assert found.position.shape == (len(found.time), 100, 2)
+    assert found.stopped_by is None
+
+
+def test_usl_bears_less_than_musl_and_each_what_it_says():
+    """Inside a body USL bears 0.756 of dx/c and MUSL √2 of it and more; surfaces take some of it."""
+    found = {
+        labels["order"]: critical_fraction(case)
+        for labels, case in combinations(COLUMN, {"order": ["usl", "musl"]})
+    }
+    assert found["usl"].limit == "acoustic"
+    assert found["usl"].declared < found["usl"].fraction < 1.0
+    assert found["usl"].fraction < found["musl"].fraction
+    assert found["musl"].declared <= found["musl"].fraction * 1.06
+    assert found["usl"].broken in ("guard", "energy", "distance")
+    assert found["usl"].unstable / found["usl"].fraction < 1.07
+
+
+def test_laws_are_made_over_and_unknown_names_refused():
+    labels = [
+        labels for labels, _ in combinations(COLUMN, {"law": ["newtonian"], "shape": ["linear", "cpgimp"]})
+    ]
+    assert labels == [{"law": "newtonian", "shape": "linear"}, {"law": "newtonian", "shape": "cpgimp"}]
+    with pytest.raises(CaseError, match="--order usq: it must be one of musl, usf, usl"):
+        list(combinations(COLUMN, {"order": ["usq"]}))
+
+
+def test_the_command_prints_and_draws(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "column.json").write_text(json.dumps(COLUMN | {"until": 0.05}))
+    with pytest.raises(SystemExit) as stop:
+        main(["stability", "column.json", "--order", "usl,musl", "--json", "--out", "map"])
+    assert stop.value.code == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["order"] for row in rows] == ["usl", "musl"]
+    assert {"fraction", "unstable", "broken", "limit", "declared"} <= set(rows[0])
+    assert (tmp_path / "map" / "stability.png").stat().st_size > 10_000
+    with pytest.raises(SystemExit) as stop:
+        main(["stability", "column.json", "--order", "nothing"])
+    assert stop.value.code == 2
