@@ -6,12 +6,18 @@ same instructions whatever the number of threads: results are equal to the bit.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
 import numba
 
 from .code_cache import cached_code
+
+# A thread of GNU OpenMP that waits for another one spins for milliseconds before it sleeps; where the two
+# have come to share a core, that is what each loop then takes. This many turns are some tens of microseconds.
+# It is read when the first loop runs in parallel, and what the user has set stays.
+os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 
 CHUNK = 256
 """Particles in a chunk: enough to hide the cost of scheduling, few enough to keep threads evenly busy."""
