@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from ..output.atomic import replacing
 from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
 from .chart import Chart
-from .collect import COSTS
+from .quantities import COSTS
 
 LEAST_ERROR = 1e-6
 """Errors below it are drawn there: what is exact has no place on a logarithmic axis."""
