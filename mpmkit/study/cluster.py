@@ -29,7 +29,8 @@ def cluster(address: str) -> Iterator[Executor]:
     except ImportError:
         raise CaseError(f"--scheduler {address} needs distributed: pip install 'mpmkit[cluster]'") from None
     try:
-        client = Client(address, timeout=PATIENCE)
+        # No default, or xarray would ask it for arrays, even one that never found its scheduler.
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise CaseError(f"--scheduler {address}: no scheduler answers there: {error}") from None
     try:
