@@ -1,7 +1,9 @@
 """Study files and ``--vary``: what they may say, and the one sentence for what they may not."""
 
 import json
+import re
 from contextlib import nullcontext
+from pathlib import Path
 
 import pytest
 import xarray
@@ -140,6 +142,16 @@ def test_a_study_is_read_from_where_it_lies_and_named_after_its_file(here, monke
     study = load_study(here / "my study.json")
     assert study.name == "my-study"
     assert [member.case.scheme.order.name for member in members_of(study)] == ["usl", "usf"]
+
+
+def test_the_study_of_the_documentation(tmp_path):
+    root = Path(__file__).parents[1]
+    (text,) = re.findall(
+        r"```json\n(.*?)```", (root / "docs" / "studies.md").read_text(encoding="utf-8"), re.S
+    )
+    (tmp_path / "orders.json").write_text(text.replace("cases/", f"{root}/cases/"), encoding="utf-8")
+    members = members_of(load_study(tmp_path / "orders.json"))
+    assert [member.title for member in members] == ["usl, coarse", "usl, fine", "usf, coarse", "usf, fine"]
 
 
 @pytest.mark.parametrize(
