@@ -35,8 +35,10 @@ class Complaint(NamedTuple):
     text: str
 
 
-def explain(error: ValidationError, data: Any, model: type[BaseModel], registry: Registry) -> str:
-    """The first error as a sentence, and how many more there are."""
+def explain(
+    error: ValidationError, data: Any, model: type[BaseModel], registry: Registry, what: str = "case"
+) -> str:
+    """The first error as a sentence, and how many more there are; ``what`` is what ``data`` is."""
     schema = _schema(model)
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
@@ -49,7 +51,7 @@ def explain(error: ValidationError, data: Any, model: type[BaseModel], registry:
     ]
     first, *rest = unknown + others
     more = f" (and {len(rest)} more)" if rest else ""
-    return " ".join((_sentence(first, data, schema, registry) + more).split())
+    return " ".join((_sentence(first, data, schema, registry, what) + more).split())
 
 
 @lru_cache(maxsize=4)
@@ -82,12 +84,12 @@ def _distinct(complaints: list[Complaint]) -> list[Complaint]:
     return sorted(kept, key=complaints.index)
 
 
-def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry) -> str:
+def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry, what: str) -> str:
     path, kind, value, text = complaint
     if kind == "json_invalid":  # what Python's reader takes and pydantic's does not
         return NESTED if "recursion" in text else f"it is not valid JSON: {text}"
     if kind == "extra_forbidden":
-        return _unknown_key(path, Place(schema, data, path[:-1]).keys())
+        return _unknown_key(path, Place(schema, data, path[:-1]).keys(), what)
     if kind not in PYDANTICS_OWN:
         return f"{_field(path)}: {text}" if path else text
     if kind == "finite_number":
@@ -109,13 +111,13 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry)
 
 
 def _field(path: Path) -> str:
-    return ".".join(str(key) for key in path) or "the case"
+    return ".".join(str(key) for key in path)
 
 
-def _unknown_key(path: Path, allowed: list[str]) -> str:
+def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
     near = nearest(path[-1], allowed)
     hint = f"it may have {', '.join(allowed)}" if near is None else f"did you mean '{near}'?"
-    return f"{_field(path[:-1])} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
+    return f"{_field(path[:-1]) or f'the {what}'} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
 
 
 def _unusable(path: Path, name: Any, registry: Registry) -> str:

@@ -27,11 +27,10 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> dict[str,
     data = copy.deepcopy(data)
     for override in overrides:
         path, sign, text = override.partition("=")
-        keys = path.split(".")
         try:
-            if not sign or not all(keys) or len(keys) > DEEPEST:
+            if not sign or not _is_path(path):
                 raise ValueError("it must read path.to.key=value, such as scheme.order=usf")
-            _assign(data, keys, _value(text))
+            assign(data, path, _value(text))
         except ValueError as error:
             given = override if len(override) <= 60 else override[:57] + "..."
             raise CaseError(f"--set {given}: {error}") from None
@@ -45,7 +44,20 @@ def _value(text: str) -> Any:
         return text
 
 
-def _assign(data: dict[str, Any], keys: list[str], value: Any) -> None:
+def _is_path(path: str) -> bool:
+    keys = path.split(".")
+    return all(keys) and len(keys) <= DEEPEST
+
+
+def assign(data: dict[str, Any], path: str, value: Any) -> None:
+    """Set what is at a path of ``data``, as ``apply_overrides`` does.
+
+    Raises:
+        ValueError: the path leads nowhere.
+    """
+    if not _is_path(path):
+        raise ValueError(f"'{path}' is no path; it must read path.to.key, such as scheme.order")
+    keys = path.split(".")
     here: Any = data
     for depth, key in enumerate(keys):
         index = _index(here, key, ".".join(keys[:depth]))

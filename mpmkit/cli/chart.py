@@ -37,8 +37,12 @@ def command(study: str, variable: str, reference: str, cost: str, out: str | Non
     try:
         with xarray.open_dataset(results) as dataset:
             dataset.load()
+        if "fate" not in dataset:
+            raise ValueError
     except (OSError, ValueError):
-        raise CaseError(f"'{study}' holds no study that was run: there is no {results}") from None
+        raise CaseError(
+            f"'{study}' must be the directory of a study that was run; there is no {results} of one"
+        ) from None
     found = chart(dataset, variable, reference, cost)
     path = Path(out) if out is not None else Path(study) / "chart.png"
     draw(found, str(dataset.attrs["title"]), path)

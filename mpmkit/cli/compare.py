@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import click
 
 from . import options
@@ -22,9 +19,9 @@ from .study import run_study
 )
 @options.set_values
 @options.until
-@options.out
+@options.study_out
 @options.workers
-@options.threads
+@options.member_threads
 @options.scheduler
 @options.quiet
 def command(
@@ -52,8 +49,8 @@ def command(
     data.setdefault("name", name_from(case))
     study = parse_study(
         {
-            "name": f"compare-{Path(case).stem}",
-            "case": json.loads(json.dumps(data)),
+            "name": f"compare-{name_from(case)}"[:100],
+            "case": data,
             "vary": parse_vary(vary),
         },
         source="--vary",

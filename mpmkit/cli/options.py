@@ -21,6 +21,12 @@ overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier r
 out = click.option(
     "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
 )
+study_out = click.option(
+    "--out", type=click.Path(), metavar="DIR", help="The study's directory; runs/<study name> unless told."
+)
+member_threads = click.option(
+    "--threads", type=click.IntRange(min=1), help="Threads of each member; as the study says unless told."
+)
 workers = click.option(
     "--workers",
     type=click.IntRange(min=1),

@@ -10,14 +10,16 @@ import click
 from . import options
 
 if TYPE_CHECKING:
-    from ..study import Study
+    from ..study import Member, Study
+    from ..study.store import Store
+    from .progress import StudyProgress
 
 
 @click.command("study")
 @click.argument("study", type=click.Path())
-@options.out
+@options.study_out
 @options.workers
-@options.threads
+@options.member_threads
 @options.scheduler
 @options.quiet
 def command(
@@ -41,38 +43,48 @@ def run_study(
     quiet: bool,
 ) -> None:
     """Run a study into its directory and say what came of it."""
+    import signal
     from contextlib import nullcontext
 
+    from ..errors import Interrupted
     from ..study import collect, execute, members_of
     from ..study.store import Store
 
     members = members_of(study)
     store = Store(Path(out) if out is not None else Path("runs") / study.name)
-    store.open(study)
-    from .progress import StudyProgress
-
-    if not quiet:
-        from .display import say
-
-        for sentence in dict.fromkeys(remark for member in members for remark in member.remarks):
-            say(sentence)
-    already = sum(store.outcome(member) is not None for member in members)
-    progress = None if quiet else StudyProgress(study.name, len(members), already)
-    with _cluster(scheduler) as executor, progress or nullcontext():
-        try:
-            execute(
-                members,
-                store,
-                threads or study.threads,
-                executor=executor,
-                workers=workers,
-                listen=progress,
-            )
-        finally:
-            store.write(collect(study, members, store))
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
+    with _cluster(scheduler) as executor:  # first of all: where there is none, nothing is written
+        store.open(study)
+        progress = None if quiet else _progress(study, members, store)
+        with progress or nullcontext():
+            try:
+                execute(
+                    members,
+                    store,
+                    threads or study.threads,
+                    executor=executor,
+                    workers=workers,
+                    listen=progress,
+                )
+            except KeyboardInterrupt:
+                raise Interrupted(
+                    f"interrupted; the members that had finished are in '{store.path}', and the same command "
+                    "goes on from there"
+                ) from None
+            finally:
+                store.write(collect(study, members, store))
     if not quiet:
         click.echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
         click.echo(f"results in {store.path}")
+
+
+def _progress(study: Study, members: list[Member], store: Store) -> StudyProgress:
+    from .display import say
+    from .progress import StudyProgress
+
+    for sentence in dict.fromkeys(remark for member in members for remark in member.remarks):
+        say(sentence)
+    return StudyProgress(study.name, len(members), sum(store.settled(member) for member in members))
 
 
 def _cluster(scheduler: str | None):

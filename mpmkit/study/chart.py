@@ -11,8 +11,8 @@ import numpy as np
 import xarray
 
 from ..errors import CaseError
-from .collect import COSTS
 from .figures import members
+from .quantities import COSTS
 
 FINEST = "finest"
 """The member with the most particle-steps of those that finished, as the reference of the others."""
@@ -52,20 +52,22 @@ def chart(
     """Errors and costs of the members that finished.
 
     The error of a history is its largest departure from the reference's, over the times that both have, as a
-    part of the reference's largest value; that of a figure, such as ``t500``, is relative to it.
+    part of the reference's largest value; against a number it is that of the last value. That of a figure,
+    such as ``t500``, is relative to the reference.
 
     Args:
         dataset: of ``collect``.
         variable: a history or a figure of the dataset.
-        reference: a number, a CSV file with the columns ``time_s`` and ``<variable>_<unit>``, or ``finest``.
+        reference: a number, ``finest``, or a CSV file with the columns ``time_s`` and ``<variable>_<unit>``,
+            in the unit of the dataset.
         cost: wall_seconds, cpu_seconds, steps, particle_steps or memory_bytes.
 
     Raises:
         CaseError: there is no such variable, cost or reference, or no member finished.
     """
-    if variable not in dataset or dataset[variable].dtype.kind != "f":
-        allowed = ", ".join(str(name) for name, field in dataset.data_vars.items() if field.dtype.kind == "f")
-        raise CaseError(f"--variable {variable}: the study has no such variable; it has {allowed}")
+    allowed = [str(name) for name, field in dataset.data_vars.items() if field.dtype.kind == "f"]
+    if variable not in allowed:
+        raise CaseError(f"--variable {variable}: the study has no such variable; it has {', '.join(allowed)}")
     if cost not in COSTS:
         raise CaseError(f"--cost {cost}: it must be one of {', '.join(COSTS)}")
     finished = [
@@ -78,32 +80,37 @@ def chart(
         title, finest = max(finished, key=lambda item: float(item[1].particle_steps))
         exact, against = finest[variable], f"the finest member, {title}"
     elif (value := _number(reference)) is not None:
+        if not math.isfinite(value) or value == 0:
+            raise CaseError(
+                f"--reference {reference}: it must be finite and not 0, since errors are relative to it"
+            )
         exact, against = xarray.DataArray(value), f"{value:g}"
     else:
-        exact, against = _from_file(Path(reference), variable), Path(reference).name
+        exact, against = _from_file(Path(reference), dataset[variable]), Path(reference).name
     points = [
         Point(name, float(member[cost]), _error(member[variable], exact))
         for name, member in finished
         if name != title
     ]
-    return Chart(variable, cost, against, [point for point in points if math.isfinite(point.error)])
+    points = [point for point in points if math.isfinite(point.error)]
+    if not points:
+        raise CaseError(f"no member that finished has a {variable} to compare with {against}")
+    return Chart(variable, cost, against, points)
 
 
 def _error(found: xarray.DataArray, exact: xarray.DataArray) -> float:
-    if "time" not in found.dims:
-        if exact.ndim:
-            raise CaseError(
-                f"--reference: '{found.name}' is one number a member, and so must its reference be"
-            )
-        return float(abs(found - exact) / abs(exact))
+    """Relative error; not a number where the two cannot be compared."""
+    if "time" not in found.dims and "time" in exact.dims:
+        raise CaseError(f"--reference: '{found.name}' is one number a member, and so must its reference be")
     if "time" not in exact.dims:
-        found = found.dropna("time")[-1:]
-        return (
-            float(np.abs(found.values - exact.values).max() / abs(float(exact))) if len(found) else math.nan
-        )
-    at = exact.interp(time=found.time) if len(exact.time) != len(found.time) else exact
-    departure = np.abs(found.values - at.values)
-    return float(np.nanmax(departure) / np.nanmax(np.abs(at.values)))
+        known = found.values[np.isfinite(found.values)]  # of a history, the last value is what counts
+        values, at = (known[-1:], exact.values)
+    else:
+        at = np.interp(found.time, exact.time, exact.values, left=math.nan, right=math.nan)
+        both = np.isfinite(found.values) & np.isfinite(at)
+        values, at = found.values[both], at[both]
+    largest = np.abs(at).max(initial=0.0)
+    return float(np.abs(values - at).max() / largest) if len(values) and largest > 0 else math.nan
 
 
 def _number(text: str) -> float | None:
@@ -113,18 +120,20 @@ def _number(text: str) -> float | None:
         return None
 
 
-def _from_file(path: Path, variable: str) -> xarray.DataArray:
+def _from_file(path: Path, variable: xarray.DataArray) -> xarray.DataArray:
     """A column of a CSV file, in SI units, whose lines that begin with # are remarks."""
+    column = f"{variable.name}_{variable.attrs.get('units', '1')}"
     try:
         with path.open(encoding="utf-8") as lines:
             rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-        column = next(name for name in rows[0] if name.startswith(variable))
-        time, values = ([float(row[name]) for row in rows] for name in ("time_s", column))
+        time, values = (np.array([float(row[name]) for row in rows]) for name in ("time_s", column))
+        if not len(rows) or not np.all(np.isfinite([time, values])) or np.any(np.diff(time) <= 0):
+            raise ValueError
     except OSError as error:
         raise CaseError(f"--reference {path}: it cannot be read: {error.strerror}") from None
-    except (StopIteration, IndexError, KeyError, ValueError, UnicodeDecodeError):
+    except (KeyError, TypeError, ValueError, csv.Error):  # ValueError: of the encoding as well
         raise CaseError(
-            f"--reference {path}: it must be a number, 'finest', or a CSV file with the columns time_s and "
-            f"{variable}_<unit>, all of them numbers"
+            f"--reference {path}: it must be a number, 'finest', or a CSV file with the columns time_s, "
+            f"which grows from row to row, and {column}, all of them finite numbers"
         ) from None
-    return xarray.DataArray(values, {"time": time}, ("time",), name=variable)
+    return xarray.DataArray(values, {"time": time}, ("time",), name=variable.name)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogFormatter
 
 from ..output.atomic import replacing
 from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
 from .chart import Chart
-from .collect import COSTS
+from .quantities import COSTS
 
 LEAST_ERROR = 1e-6
 """Errors below it are drawn there: what is exact has no place on a logarithmic axis."""
@@ -22,6 +23,12 @@ def draw(chart: Chart, title: str, path: Path) -> None:
         axes = figure.add_subplot()
         axes.set_xscale("log")
         axes.set_yscale("log")
+        for axis in (
+            axes.xaxis,
+            axes.yaxis,
+        ):  # powers of ten as numbers: the style takes no text for a formula
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.4)))
         front = chart.front
         others = [point for point in chart.points if point not in front]
         for points, colour, size in ((others, GREY, 5), (front, BLUE, 8)):
@@ -59,6 +66,6 @@ def draw(chart: Chart, title: str, path: Path) -> None:
         axes.set_title(f"{title}: accuracy against cost", loc="left")
         names = "\n".join(f"{number}  {point.title}" for number, point in enumerate(front, start=1))
         figure.text(1.01, 0.97, names, va="top", ha="left", fontsize=9, color=BLUE)
-        axes.legend(loc="upper right")
+        axes.legend(loc="best")
         with replacing(path) as partial:
             figure.savefig(partial, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.12)

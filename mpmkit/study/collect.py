@@ -12,26 +12,11 @@ import xarray
 from .. import __version__
 from .members import Member, dimensions, shown
 from .model import Study
+from .quantities import COSTS, FIGURES
 from .store import Store
 
 ROWS = 201
 """Times at which histories are compared."""
-FIGURES = {
-    "t500": ("s", "time to a spread of 500 mm"),
-    "final_spread": ("m", "spread diameter at the end"),
-    "final_slump": ("m", "slump at the end"),
-    "final_height": ("m", "largest height at the end"),
-    "simulated_time": ("s", "simulated time"),
-    "particles": ("1", "particles at the end"),
-}
-"""Figures of a summary."""
-COSTS = {
-    "wall_seconds": ("s", "wall time of the run"),
-    "cpu_seconds": ("s", "CPU time of the run"),
-    "steps": ("1", "steps"),
-    "particle_steps": ("1", "particle-steps"),
-    "memory_bytes": ("B", "memory, as plan counts it"),
-}
 
 
 def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset:

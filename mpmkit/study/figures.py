@@ -41,7 +41,7 @@ def draw(dataset: xarray.Dataset, directory: Path) -> list[Path]:
 
 
 def members(dataset: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
-    """Title and data of every member that left a history."""
+    """Title and data of every member."""
     dimensions = dataset.fate.dims
     for place in np.ndindex(dataset.fate.shape):
         member = dataset.isel(dict(zip(dimensions, place, strict=True)))
@@ -51,7 +51,11 @@ def members(dataset: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
 
 def _figure(dataset: xarray.Dataset, differences: bool) -> Figure | None:
     names = [name for name in SHOWN if name in dataset and bool(dataset[name].notnull().any())]
-    drawn = [(title, member) for title, member in members(dataset) if str(member.fate.item())]
+    drawn = [
+        (title, member)
+        for title, member in members(dataset)
+        if any(bool(member[name].notnull().any()) for name in names)
+    ]
     if not names or len(drawn) < 1 + differences:
         return None
     rows = (len(names) + 1) // 2

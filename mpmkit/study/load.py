@@ -37,6 +37,6 @@ def parse_study(data: Any, source: str = "study") -> Study:
     try:
         return Study.model_validate_json(json.dumps(data, allow_nan=False))
     except ValidationError as error:
-        raise CaseError(f"{source}: {explain(error, data, Study, installed())}") from None
+        raise CaseError(f"{source}: {explain(error, data, Study, installed(), 'study')}") from None
     except (TypeError, ValueError, RecursionError) as error:
         raise CaseError(f"{source}: {error}") from None

@@ -14,10 +14,11 @@ from .. import __version__
 from ..case import parse_case
 from ..case.load import name_from, read_json
 from ..case.model import Case
+from ..case.overrides import assign
 from ..errors import CaseError
 from ..provenance import plugins_used, resolved
 from ..registry import installed
-from .model import Changes, Study
+from .model import Changes, Study, shown
 from .refit import with_law
 
 MOST = 10_000
@@ -57,11 +58,6 @@ class Member:
         return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest()
 
 
-def shown(label: Any) -> str:
-    """A label as a person writes it."""
-    return label if isinstance(label, str) else json.dumps(label, ensure_ascii=False)
-
-
 def dimensions(study: Study) -> dict[str, list[Any]]:
     """Labels along each dimension of a study."""
     if study.members:
@@ -97,31 +93,38 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
     changes: Changes = dict(study.common)
     for dimension, label in labels.items():
         changes |= _changes(study, dimension, label)
-    base, remarks = _with_laws(base, changes)
-    overrides = [f"{path}={json.dumps(value)}" for path, value in changes.items()]
     title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
     try:
-        case = parse_case(base, overrides, source="its case")
-    except CaseError as error:
+        data, remarks = _with_laws(base, changes)
+        for path, value in changes.items():
+            assign(data, path, value)
+        case = parse_case(data, source="its case")
+    except (CaseError, ValueError) as error:
         raise CaseError(f"study '{study.name}', member {title}: {error}") from None
     return Member(labels, resolved(case), case, remarks)
 
 
 def _with_laws(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:
-    """The case with each material made over where a change names another law and no more.
+    """The case with each material made over where a change names another law.
 
-    A law that comes with all its parameters, as a whole material or key by key, is left as it is given.
+    Parameters that are changed along with the law count as given: the rest is fitted around them, and to the
+    curve that the old law has with them.
     """
     remarks: list[str] = []
     base = copy.deepcopy(base)
     for path, name in changes.items():
-        material = _at(base, path.removesuffix(".law"))
+        place = path.removesuffix(".law")
+        material = _at(base, place)
         if path.endswith(".material.law") and isinstance(material, dict) and isinstance(name, str):
-            given = {other.rpartition(".")[2] for other in changes if other.startswith(path[:-3])}
-            made, said = with_law(material, name, installed())
+            given = {
+                key.rpartition(".")[2]: value
+                for key, value in changes.items()
+                if key.rpartition(".")[0] == place and key != path
+            }
+            made, said = with_law(material | given, name, installed())
             material.clear()
             material.update(made)
-            remarks += [] if given - {"law"} else said
+            remarks += said
     return base, remarks
 
 

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+import json
+import re
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from ..case.base import Model
+from .quantities import TAKEN
 
-Changes = dict[str, Any]
-"""New values by their paths in the case, such as ``{"scheme.order": "usf"}``."""
+
+def _said(kind: str, allowed: str) -> WithJsonSchema:
+    """The schema of a type, with what may stand there in words: those of the sentence about a bad value."""
+    return WithJsonSchema({"type": kind, "allowed": allowed})
+
+
+Changes = Annotated[
+    dict[str, Any],
+    _said("object", 'an object of values by their paths in the case, such as {"scheme.order": "usf"}'),
+]
+"""New values by their paths in the case."""
+DIMENSION = r"[A-Za-z0-9_][A-Za-z0-9_.-]*"
+"""What a dimension may be called: NetCDF's names, and no more of them than are easily typed."""
 
 
 class Study(Model):
@@ -25,11 +39,12 @@ class Study(Model):
         },
     )
     description: str = ""
-    case: str | dict[str, Any] = Field(
-        description="the case that is varied: a file, its path from the study's, or the case itself"
-    )
+    case: (
+        Annotated[str, _said("string", "the path of a case file")]
+        | Annotated[dict[str, Any], _said("object", "a case itself")]
+    ) = Field(description="the case that is varied: a file, its path from the study's, or the case itself")
     common: Changes = Field(default={}, description="values by path that all members have")
-    vary: dict[str, list[Any] | dict[str, Changes]] = Field(
+    vary: dict[str, Annotated[list[Any], _said("array", "a list of values")] | dict[str, Changes]] = Field(
         default={},
         description="dimensions of a grid: the values of one path, or by name sets of values by path",
     )
@@ -44,8 +59,22 @@ class Study(Model):
             given = "both are given" if self.vary else "neither is given"
             raise ValueError(f"a study has either vary or members, and {given}")
         for name, choices in self.vary.items():
+            if not re.fullmatch(DIMENSION, name):
+                raise ValueError(
+                    f"vary has {shown([name])[1:-1]}; it must be named by letters, digits, '_', '.' and '-'"
+                )
+            if name in TAKEN:
+                raise ValueError(f"vary.{name} has the name of a result; it must be called something else")
             if not choices:
                 raise ValueError(f"vary.{name} is empty; it must list at least one value")
-            if isinstance(choices, list) and len({repr(value) for value in choices}) < len(choices):
-                raise ValueError(f"vary.{name} has a value twice; keep one of them")
+            # As they are shown, since so they are told apart in the dataset: 1 is not 1.0, but "1" is 1.
+            labels = [shown(choice) for choice in choices]
+            twice = next((label for label in labels if labels.count(label) > 1), None)
+            if twice is not None:
+                raise ValueError(f"vary.{name} has the value {twice} twice; keep one of them")
         return self
+
+
+def shown(label: Any) -> str:
+    """A label as a person writes it."""
+    return label if isinstance(label, str) else json.dumps(label, ensure_ascii=False)

@@ -15,7 +15,7 @@ from ..output.atomic import cannot_write, replacing
 from .members import Member
 from .model import Study
 from .table import table
-from .work import Outcome
+from .work import FAILED, Outcome
 
 
 class Store:
@@ -59,12 +59,20 @@ class Store:
         write_json(directory / "member.json", {"labels": member.labels, "digest": member.digest, **record})
 
     def outcome(self, member: Member) -> dict[str, Any] | None:
-        """What is kept of a member that ran, of this very case with these versions; None if it has to run."""
+        """What is kept of a member that ran, of this very case with these versions; None if none did."""
         try:
             record = json.loads((self.directory(member) / "member.json").read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
         return record if record.get("digest") == member.digest else None
+
+    def settled(self, member: Member) -> bool:
+        """Whether a member has come to an end that it would come to again: its own, or a guard's.
+
+        What failed may have failed of the machine, or of something that was not installed.
+        """
+        record = self.outcome(member)
+        return record is not None and record["fate"] != FAILED
 
     def write(self, dataset: xarray.Dataset) -> None:
         """Write everything there is, ``results.nc``, ``table.md`` and the figures."""

@@ -20,6 +20,10 @@ COLUMNS = (
 """Variable, heading, scale and format."""
 
 
+BAR = r"\|"
+"""A bar that does not end a cell."""
+
+
 def table(dataset: xarray.Dataset) -> str:
     """Markdown: a row for each member, its labels first, its fate last."""
     dimensions = dataset.fate.dims
@@ -30,7 +34,7 @@ def table(dataset: xarray.Dataset) -> str:
         cells = [str(member[name].item()) for name in dimensions]
         cells += [_cell(float(member[name]), scale, form) for name, _, scale, form in COLUMNS]
         cells.append(fate_of(member))
-        lines.append(f"| {' | '.join(cells)} |")
+        lines.append(f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |")
     return "\n".join(lines) + "\n"
 
 

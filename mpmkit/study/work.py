@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import tempfile
+import threading
 import time as clock
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import GuardStop, reason
+
+FAILED = "failed"
+"""Fate of a member that could not be run, or met an error that no guard knows."""
+MOMENT = 1e-9
+"""Part of a run that is one step, with which all code is loaded."""
+TURN = threading.Lock()
+"""One member at a time in a process, where an executor works with threads: the CPU's clock, numba's threads
+and NetCDF's library are the whole process's."""
 
 
 @dataclass(frozen=True)
@@ -31,25 +43,27 @@ def run_member(data: dict[str, Any], threads: int) -> Outcome:
 
     The seconds are those of the run itself: kernels are loaded, or compiled, before the clock starts.
     """
+    with TURN, np.errstate(all="ignore"):  # a run that diverges is told of by its guard
+        return _run(data, threads)
+
+
+def _run(data: dict[str, Any], threads: int) -> Outcome:
     import json
 
-    import meshio  # noqa: F401  these two write the results, and take longer to load than a small run lasts
-    import xarray  # noqa: F401
-
     from ..case import parse_case
-    from ..memory import expected_bytes
+    from ..memory import expected_bytes, require_memory
     from ..runner import run
-    from ..solver.simulation import Simulation
-    from ..threads import use_threads
 
     try:
         case = parse_case(data, ["output.report=false", f"output.frame_interval={data['until']!r}"])
-        use_threads(threads, 1)
-        Simulation(case).advance()
+        require_memory(case)
     except Exception as error:
-        return Outcome("failed", reason(error), {}, {}, b"")
+        return Outcome(FAILED, reason(error), {}, {}, b"")
     fate, sentence = "finished", ""
     with tempfile.TemporaryDirectory() as place:
+        with suppress(Exception):  # which the run meets again, as something to tell of
+            moment = case.model_copy(update={"until": MOMENT * case.until})
+            run(moment, Path(place) / "moment", threads=threads)
         out = Path(place) / "run"
         wall, cpu = clock.perf_counter(), clock.process_time()
         try:
@@ -57,7 +71,7 @@ def run_member(data: dict[str, Any], threads: int) -> Outcome:
         except GuardStop as stop:
             fate, sentence = stop.guard, reason(stop)
         except Exception as error:
-            fate, sentence = "failed", reason(error)
+            fate, sentence = FAILED, reason(error)
         wall, cpu = clock.perf_counter() - wall, clock.process_time() - cpu
         summary = json.loads(_text(out / "summary.json") or "{}")
         history = (out / "history.nc").read_bytes() if (out / "history.nc").exists() else b""

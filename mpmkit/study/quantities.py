@@ -1,0 +1,25 @@
+"""What a study's dataset holds of each member beside its histories."""
+
+from __future__ import annotations
+
+from ..recorder import COLUMNS
+
+FIGURES = {
+    "t500": ("s", "time to a spread of 500 mm"),
+    "final_spread": ("m", "spread diameter at the end"),
+    "final_slump": ("m", "slump at the end"),
+    "final_height": ("m", "largest height at the end"),
+    "simulated_time": ("s", "simulated time"),
+    "particles": ("1", "particles at the end"),
+}
+"""Figures of a summary: unit and meaning."""
+COSTS = {
+    "wall_seconds": ("s", "wall time of the run"),
+    "cpu_seconds": ("s", "CPU time of the run"),
+    "steps": ("1", "steps"),
+    "particle_steps": ("1", "particle-steps"),
+    "memory_bytes": ("B", "memory, as plan counts it"),
+}
+"""What a member cost."""
+TAKEN = {"time", "fate", "sentence", *FIGURES, *COSTS, *(column.name for column in COLUMNS)}
+"""Names that no dimension of a study can have."""

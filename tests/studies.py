@@ -1,0 +1,48 @@
+"""A tiny case to vary, and executors without processes."""
+
+import copy
+import os
+import signal
+from concurrent.futures import Executor, Future
+
+from test_cli import CASE, one_line, status
+
+from mpmkit.study import parse_study
+from mpmkit.study.work import Outcome
+
+__all__ = ["CASE", "DEADLY", "LEAVES", "NOTHING", "Now", "fragile", "one_line", "status", "study"]
+
+LEAVES = {"grid.faces.x_max": "open", "bodies.0.velocity": [200, 0]}
+"""Changes with which the material leaves through an open face."""
+NOTHING = {"bodies.0.shape.upper": [0.201, 0.001]}
+"""Changes that are a valid case, of a body without a particle."""
+DEADLY = 6.66e-3
+"""The ``until`` of which a ``fragile`` worker dies."""
+
+
+def study(**keys):
+    """A study of the tiny case, or of another."""
+    return parse_study({"name": "tiny", "case": copy.deepcopy(CASE)} | keys)
+
+
+class Now(Executor):
+    """Runs what it is given at once, and counts."""
+
+    def __init__(self):
+        self.ran = []
+
+    def submit(self, work, /, *arguments, **options):
+        self.ran.append(arguments[0])
+        future = Future()
+        try:
+            future.set_result(work(*arguments, **options))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def fragile(data, threads):
+    """In the place of a run: nothing, or the end of the process."""
+    if data["until"] == DEADLY:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return Outcome("finished", "", {}, {"wall_seconds": 0.0}, b"")
