@@ -21,7 +21,11 @@ def arguments() -> argparse.Namespace:
 
 
 def output_of(*command: str) -> object:
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    """What a program prints as JSON; a line before it, such as a library's greeting, is passed over."""
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    lines = printed.splitlines(keepends=True)
+    start = next(number for number, line in enumerate(lines) if line.rstrip() in ("[", "{") or line[0] == "{")
+    return json.loads("".join(lines[start:]))
 
 
 def ours(scene: str, threads: int) -> float:
