@@ -748,7 +748,7 @@ class Sorted:
         self.verdicts = np.empty((len(self.blocks.cell), 2), dtype=np.int64)
 
     def ask(self):
-        return locate.locate(
+        return locate.locate(2)(
             self.position, self.half_size, self.extent, 1 / self.cell, self.blocks.first, self.blocks.cell,
             self.low, self.high, self.verdicts,
         )  # fmt: skip

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numba import prange
 
@@ -11,43 +13,52 @@ from .sort import BLOCK_WIDTH
 HERE, STRAYED, LOST = range(3)
 """All particles in place; one has drifted too far from its block or window; one is outside or not finite."""
 
+SHARES = 64
+"""Shares into which the blocks are dealt out, one by one."""
 
-@kernel()
-def locate(
-    position, half_size, extent, inverse_cell, block_first, block_cell, window_low, window_high, verdicts
-):
-    """Check all particles and their domains. Returns the worst verdict and the particle that is ``LOST``.
+
+@cache
+def locate(dim: int):
+    """The kernel that checks all particles and their domains.
+
+    ``locate(position, half_size, extent, inverse_cell, block_first, block_cell, window_low, window_high,
+    verdicts)`` returns the worst verdict and the particle that is ``LOST``.
 
     A particle may drift anywhere between the cells ``window_low`` and ``window_high``, but no more than one
     cell beyond its block. ``block_first[g, b]`` is the first particle of block b in group g, and
     ``block_cell`` its lowest cell; ``verdicts`` is scratch, two integers a block.
     """
-    dim = position.shape[1]
-    blocks = len(block_cell)
-    for b in prange(blocks):
+
+    @kernel()
+    def locate(
+        position, half_size, extent, inverse_cell, block_first, block_cell, window_low, window_high, verdicts
+    ):
+        blocks = len(block_cell)
+        for share in prange(SHARES):  # of every colour some blocks: neighbours differ in load
+            for b in range(share, blocks, SHARES):
+                worst, who = HERE, -1
+                for g in range(block_first.shape[0]):
+                    for p in range(block_first[g, b], block_first[g, b + 1]):
+                        here = there = True
+                        for d in range(dim):
+                            x, half = position[p, d], half_size[p, d]
+                            # Also false of a NaN; and a box that is none would send the weights anywhere.
+                            there &= (x >= 0.0) & (x <= extent[d]) & (half > 0.0) & (half < np.inf)
+                            cells = x * inverse_cell
+                            here &= cells >= max(window_low[d], block_cell[b, d] - 1)
+                            here &= cells < min(window_high[d], block_cell[b, d] + BLOCK_WIDTH) + 1
+                        if not there and worst != LOST:
+                            worst, who = LOST, p
+                        elif not here and worst == HERE:
+                            worst = STRAYED
+                verdicts[b, 0], verdicts[b, 1] = worst, who
         worst, who = HERE, -1
-        for g in range(block_first.shape[0]):
-            for p in range(block_first[g, b], block_first[g, b + 1]):
-                here = there = True
-                for d in range(dim):
-                    x = position[p, d]
-                    # Also false of a NaN; and a box that is none would send the weights anywhere.
-                    there &= (
-                        (x >= 0.0) & (x <= extent[d]) & (half_size[p, d] > 0.0) & (half_size[p, d] < np.inf)
-                    )
-                    cells = x * inverse_cell
-                    here &= cells >= max(window_low[d], block_cell[b, d] - 1)
-                    here &= cells < min(window_high[d], block_cell[b, d] + BLOCK_WIDTH) + 1
-                if not there and worst != LOST:
-                    worst, who = LOST, p
-                elif not here and worst == HERE:
-                    worst = STRAYED
-        verdicts[b, 0], verdicts[b, 1] = worst, who
-    worst, who = HERE, -1
-    for b in range(blocks):
-        if verdicts[b, 0] > worst:
-            worst, who = verdicts[b, 0], verdicts[b, 1]
-    return worst, who
+        for b in range(blocks):
+            if verdicts[b, 0] > worst:
+                worst, who = verdicts[b, 0], verdicts[b, 1]
+        return worst, who
+
+    return locate
 
 
 @kernel()
@@ -78,3 +89,29 @@ def largest_speed(velocity, scratch):
     for c in range(chunks):
         worst = max(worst, scratch[c])
     return np.sqrt(worst)
+
+
+@kernel()
+def first_unsound(position, velocity, stress, pressure, volume_ratio, firsts):
+    """First particle whose state is not finite or whose volume ratio is not positive; -1 if all are sound.
+
+    ``firsts`` is scratch, an integer a chunk.
+    """
+    n, dim = position.shape
+    chunks = chunk_count(n)
+    for c in prange(chunks):
+        first = -1
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            # The sum of finite numbers may overflow, but no run that goes well has any that large.
+            total = pressure[p]
+            for d in range(dim):
+                total += position[p, d] + velocity[p, d]
+            for k in range(6):
+                total += stress[p, k]
+            if not (np.isfinite(total) and volume_ratio[p] > 0.0) and first < 0:
+                first = p
+        firsts[c] = first
+    for c in range(chunks):
+        if firsts[c] >= 0:
+            return firsts[c]
+    return -1

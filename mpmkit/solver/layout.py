@@ -44,6 +44,7 @@ class Layout:
         self.window = window
         self.tasks = np.zeros((len(particles.groups), 1 << grid.dim, TASKS + 1), dtype=np.int64)
         self.sorts = 0
+        self._locate = locate(grid.dim)
         self._low = np.zeros(grid.dim, dtype=np.int64)
         self._high = np.zeros(grid.dim, dtype=np.int64)
         self._block_first = np.zeros((len(particles.groups), 1), dtype=np.int64)
@@ -63,7 +64,7 @@ class Layout:
             wrap(position, axis, self.grid.extent[axis])
         if self.sorts == 0:
             return self._sort(cells, scratch)
-        verdict, who = locate(
+        verdict, who = self._locate(
             position, self.particles.half_size, self.grid.extent, 1 / self.grid.cell_size, self._block_first,
             self._block_cell, self._low, self._high, self._verdicts,
         )  # fmt: skip

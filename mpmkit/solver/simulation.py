@@ -9,7 +9,7 @@ import numpy as np
 from ..case.model import Case
 from ..errors import GuardStop
 from ..kernels.compile import CHUNK
-from ..kernels.locate import largest_speed
+from ..kernels.locate import first_unsound, largest_speed
 from .grid import Grid
 from .layout import Scattered
 from .measures import Measures
@@ -124,12 +124,10 @@ class Simulation:
     def check(self) -> None:
         """Raise GuardStop if a particle has a state that is not finite, or a volume that is not positive."""
         p = self.particles
-        fine = np.isfinite(p.position).all(axis=1) & np.isfinite(p.velocity).all(axis=1)
-        fine &= np.isfinite(p.stress).all(axis=1) & np.isfinite(p.pressure)
-        if not fine.all():
-            self._stop(int(np.argmin(fine)))
-        if not (p.volume_ratio > 0).all():
-            self._stop(int(np.argmin(p.volume_ratio)))
+        firsts = np.empty(len(p) // CHUNK + 1, dtype=np.int64)
+        unsound = first_unsound(p.position, p.velocity, p.stress, p.pressure, p.volume_ratio, firsts)
+        if unsound >= 0:
+            self._stop(int(unsound))
 
     def _stop(self, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
         """Raise the GuardStop that fits what has become of a particle."""
