@@ -109,11 +109,11 @@ def overhead() -> None:
 
 
 def main() -> None:
+    memory()  # first, while there is nothing that could be used again
     overhead()
     threads()
     particles()
     domain()
-    memory()
 
 
 if __name__ == "__main__":

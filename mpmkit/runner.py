@@ -44,6 +44,20 @@ class Progress:
 Listener = Callable[[Progress], None]
 
 
+class Stopwatch:
+    """Wall time of a run from its first step on, s: what it takes to load and compile is not the run's."""
+
+    def __init__(self) -> None:
+        self._begin: float | None = None
+
+    def start(self) -> None:
+        self._begin = clock.monotonic()
+
+    @property
+    def elapsed(self) -> float:
+        return 0.0 if self._begin is None else clock.monotonic() - self._begin
+
+
 def run(
     case: Case,
     out: str | Path | None = None,
@@ -111,27 +125,27 @@ def _report(case: Case, directory: RunDirectory) -> None:
 def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
     simulation, directory = recorder.simulation, recorder.directory
     case = simulation.case
-    start = clock.monotonic()
+    watch = Stopwatch()
     try:
         with blaming_plugins(case, lambda: (simulation.steps, simulation.time)):
             _announce(simulation, threads)
-            _advance(simulation, recorder, listen)
-        conclude(recorder, "finished", clock.monotonic() - start)
+            _advance(simulation, recorder, watch, listen)
+        conclude(recorder, "finished", watch.elapsed)
     except GuardStop as stop:
         LOGGER.error("%s", stop, exc_info=stop.__cause__)
-        salvage(recorder, stop.guard, clock.monotonic() - start)
+        salvage(recorder, stop.guard, watch.elapsed)
         raise
     except KeyboardInterrupt:
-        salvage(recorder, "interrupted", clock.monotonic() - start)
+        salvage(recorder, "interrupted", watch.elapsed)
         kept = "" if directory is None else f"; the results up to then are in '{directory.path}'"
         raise Interrupted(f"interrupted at t = {simulation.time:.6g} s{kept}") from None
     except OutputError as error:
         LOGGER.error("%s", error)
-        salvage(recorder, "output-error", clock.monotonic() - start)
+        salvage(recorder, "output-error", watch.elapsed)
         raise
     except Exception as error:
         LOGGER.error("%s", reason(error), exc_info=True)
-        salvage(recorder, "error", clock.monotonic() - start)
+        salvage(recorder, "error", watch.elapsed)
         raise
 
 
@@ -150,11 +164,12 @@ def _announce(simulation: Simulation, threads: int) -> None:
         LOGGER.warning("%s", sentence)
 
 
-def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None) -> None:
+def _advance(simulation: Simulation, recorder: Recorder, watch: Stopwatch, listen: Listener | None) -> None:
     until = simulation.case.until
     recorder.record()
     simulation.advance(until)  # the first step loads or compiles the kernels: the clock starts behind it
-    start = told = clock.monotonic()
+    watch.start()
+    told = clock.monotonic()
     recorder.record()
     warned = False
     while until - simulation.time > 1e-9 * until:
@@ -170,10 +185,10 @@ def _advance(simulation: Simulation, recorder: Recorder, listen: Listener | None
         now = clock.monotonic()
         if listen is not None and now - told > TOLD_EVERY:
             told = now
-            listen(_progress(simulation, now - start))
+            listen(_progress(simulation, watch.elapsed))
     simulation.check()
     if listen is not None:
-        listen(_progress(simulation, clock.monotonic() - start))
+        listen(_progress(simulation, watch.elapsed))
 
 
 def _progress(simulation: Simulation, elapsed: float) -> Progress:

@@ -38,6 +38,6 @@ def write_report(run_directory: Path) -> list[Path]:
                 continue
             path = report / f"{picture.__name__.rpartition('.')[2]}.png"
             with replacing(path) as partial:
-                figure.savefig(partial, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.12)
+                figure.savefig(partial, format="png", dpi=DPI)
         written.append(path)
     return written
