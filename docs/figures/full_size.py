@@ -99,13 +99,13 @@ def section(directory: Path) -> None:
     """The last frame of the whole cone from above and from the side, coloured by speed."""
     frame = read_frame(sorted((directory / "frames").glob("*.vtu"))[-1])
     position, speed = 1e3 * frame["position"], frame["speed"]
-    sheet = Figure(figsize=(8.4, 6.4), dpi=160, layout="constrained")
+    sheet = Figure(figsize=(7.2, 6.6), dpi=160, layout="constrained")
     FigureCanvasAgg(sheet)
-    above, side = sheet.subplots(2, 1, height_ratios=[4, 1], sharex=True)
+    above, side = sheet.subplots(2, 1, height_ratios=[5, 1])
     for axes, vertical, depth in ((above, 1, position[:, 2]), (side, 2, -position[:, 1])):
         order = np.argsort(depth)
         points = axes.scatter(
-            position[order, 0], position[order, vertical], c=speed[order], s=0.6, linewidths=0, cmap="viridis"
+            position[order, 0], position[order, vertical], c=speed[order], s=2.0, linewidths=0, cmap="viridis"
         )
         axes.set_aspect("equal")
         axes.set_ylabel(f"{'xyz'[vertical]} / mm")

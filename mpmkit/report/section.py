@@ -63,6 +63,7 @@ def plane_of(results: RunResults) -> float | None:
     plane = symmetry_plane(results, "y")
     if plane is None:
         plane = float(np.average(y, weights=frame["half_size"].prod(axis=1))) if len(y) else 0.0
+        plane = round(plane, 9)  # what is left of a sum of lengths that cancel
     away = np.abs(y - plane)
     if len(y) and away.min() > results.case["grid"]["cell_size"]:
         return float(y[np.argmin(away)])
