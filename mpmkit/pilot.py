@@ -39,6 +39,8 @@ class Growth:
     seconds_per_step: float
     mean_particles: float
     """number of particles, the mean over the steps"""
+    of_the_case: bool
+    """whether the pilot was the case itself, so that its seconds are those of the run"""
 
 
 def pilot(case: Case, seconds: float) -> Growth | None:
@@ -68,6 +70,7 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         last_particles=len(simulation.particles) / first,
         seconds_per_step=taken / steps,
         mean_particles=mean,
+        of_the_case=coarse is case,
     )
 
 

@@ -81,7 +81,7 @@ def _growth(simulation: Simulation, seconds: float) -> Growth:
     found = None
     if (case.scheme.splitting or follows) and seconds > WORTH_A_PILOT:
         found = pilot(case, min(PILOT_SECONDS, seconds))
-    return found or Growth(1.0, 1.0, 1.0, math.nan, math.nan)
+    return found or Growth(1.0, 1.0, 1.0, math.nan, math.nan, of_the_case=False)
 
 
 def _mean_seconds(seconds_per_step: float, particles: int, growth: Growth) -> float:
@@ -89,6 +89,8 @@ def _mean_seconds(seconds_per_step: float, particles: int, growth: Growth) -> fl
 
     a, what a step costs whatever the number of particles, is told by the pilot, which has few.
     """
+    if growth.of_the_case:
+        return growth.seconds_per_step
     per_particle = seconds_per_step / particles
     if growth.mean_particles < particles / 2:
         per_particle = (seconds_per_step - growth.seconds_per_step) / (particles - growth.mean_particles)
