@@ -13,3 +13,9 @@ def one_thread():
     """One thread unless a test asks for more: the scenes are small, and on a busy machine two that wait for
     each other at the end of every loop can take a hundred times as long."""
     numba.set_num_threads(1)
+
+
+@pytest.fixture(params=[1, 2], ids=["1 thread", "2 threads"])
+def each_number_of_threads(one_thread, request):
+    """For tests of kernels: once with one thread, once with two."""
+    numba.set_num_threads(request.param)

@@ -72,7 +72,7 @@ def test_a_scalar_beyond_a_number_stays_in_its_lane():
 UNCOMPILED = """
 import numba
 import numpy as np
-from test_kernels import NODE, Scene, gathered
+from test_transfers import NODE, Scene, gathered
 
 assert numba.config.DISABLE_JIT
 for dim in (2, 3):

@@ -1,0 +1,263 @@
+"""Kernels on nodes alone: images at faces, averages, the momentum equation, against plain NumPy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mpmkit.kernels import nodes
+from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
+from mpmkit.kernels.scatter import CONTACT, NODE
+
+pytestmark = pytest.mark.usefixtures("each_number_of_threads")
+
+
+def block(dim, seed=6):
+    """Random records, shape, strides and walls of a window whose walls stand one node inside it."""
+    rng = np.random.default_rng(seed)
+    shape = (8, 7, 6) if dim == 3 else (8, 7, 1)
+    strides = (shape[1] * shape[2], shape[2], 1)
+    walls = np.array([[1, n - 2] for n in shape[:dim]], dtype=np.int64)
+    records = rng.normal(size=(int(np.prod(shape)), NODE))
+    records[:, 0] = rng.uniform(1, 2, len(records))
+    records[:, CONTACT] = rng.integers(0, 2**dim, len(records))
+    return records, shape, strides, walls
+
+
+def plane(array, axis, k):
+    """View of a plane of nodes of an array (nx, ny, nz, slots)."""
+    return np.moveaxis(array, axis, 0)[k]
+
+
+def parity(face, dim, axis, vectors):
+    """What reflection at a face does to the slots of a node.
+
+    A mirror turns the normal components of both vectors round, a stick wall all of them.
+    """
+    sign = np.ones(NODE)
+    if vectors and face == STICK:
+        sign[1 : 1 + 2 * dim] = -1.0
+    elif vectors and face != PERIODIC:
+        sign[[1 + axis, 1 + dim + axis]] = -1.0
+    return sign
+
+
+FACES_2D = [
+    [[OPEN, OPEN], [OPEN, OPEN]],
+    [[MIRROR, OPEN], [OPEN, MIRROR]],
+    [[MIRROR, MIRROR], [FRICTION, STICK]],
+    [[PERIODIC, PERIODIC], [MIRROR, OPEN]],
+    [[PERIODIC, PERIODIC], [PERIODIC, PERIODIC]],
+]
+FACES_3D = [
+    [[OPEN, OPEN], [OPEN, OPEN], [OPEN, OPEN]],
+    [[MIRROR, MIRROR], [MIRROR, OPEN], [FRICTION, STICK]],
+    [[PERIODIC, PERIODIC], [MIRROR, STICK], [PERIODIC, PERIODIC]],
+]
+each_set_of_faces = pytest.mark.parametrize("faces", FACES_2D + FACES_3D, ids=str)
+
+
+def images(faces, axis):
+    """(face, ghost plane, image plane) of an axis of a window of ``block``: walls at 1 and n - 2.
+
+    Along a periodic axis these two walls are the same plane, n - 3 cells apart.
+    """
+    n, (low, high) = (8, 7, 6)[axis], faces[axis]
+    if low == PERIODIC:
+        return [(low, 0, n - 3), (low, n - 2, 1), (low, n - 1, 2)]
+    both = [(low, 0, 2), (high, n - 1, n - 3)]
+    return [(face, ghost, image) for face, ghost, image in both if face != OPEN]
+
+
+def reflecting(records, face, axis, ghost, image, vectors):
+    """Columns of nodes behind which a face reflects: of a Coulomb wall, those that touch it."""
+    contacts = plane(records, axis, (ghost + image) // 2)[..., CONTACT].astype(int)
+    everywhere = face != FRICTION or not vectors
+    return ((contacts & 1 << axis) > 0)[..., None] | everywhere
+
+
+@each_set_of_faces
+@pytest.mark.parametrize("vectors", [True, False], ids=["vectors", "scalars"])
+def test_fold(faces, vectors):
+    faces = np.array(faces)
+    dim = len(faces)
+    records, shape, strides, walls = block(dim)
+    expected = records.copy().reshape(*shape, NODE)
+    last = 1 + 2 * dim
+    for axis in range(dim):  # axis by axis: corners reach their image in as many moves
+        for face, ghost, image in images(faces, axis):
+            sign = parity(face, dim, axis, vectors)
+            where = reflecting(expected, face, axis, ghost, image, vectors)
+            behind, before = plane(expected, axis, ghost), plane(expected, axis, image)
+            before[..., :last] += np.where(where, sign * behind, 0.0)[..., :last]
+            behind[..., :last] = np.where(where, 0.0, behind)[..., :last]
+    total = records[:, 0].sum()
+    nodes.fold(records, shape, strides, dim, faces, walls, 0, last, vectors)
+    np.testing.assert_allclose(records.reshape(expected.shape), expected, rtol=0, atol=1e-13)
+    assert records[:, 0].sum() == pytest.approx(total, rel=1e-14)  # mass is moved, never lost
+
+
+@each_set_of_faces
+@pytest.mark.parametrize("vectors", [True, False], ids=["vectors", "scalars"])
+def test_fill(faces, vectors):
+    faces = np.array(faces)
+    dim = len(faces)
+    records, shape, strides, walls = block(dim)
+    expected = records.copy().reshape(*shape, NODE)
+    last = 1 + 2 * dim
+    for axis in reversed(range(dim)):
+        for face, ghost, image in images(faces, axis):
+            sign = parity(face, dim, axis, vectors)
+            where = reflecting(expected, face, axis, ghost, image, vectors)
+            behind, before = plane(expected, axis, ghost), plane(expected, axis, image)
+            behind[..., 1:last] = np.where(where, sign * before, behind)[..., 1:last]
+    nodes.fill(records, shape, strides, dim, faces, walls, 1, last, vectors)
+    np.testing.assert_allclose(records.reshape(expected.shape), expected, rtol=0, atol=0)
+
+
+@each_set_of_faces
+def test_fill_is_the_transpose_of_fold(faces):
+    """⟨fold a, b⟩ = ⟨a, fill b⟩ for all a and b whose ghosts are what ``fill`` makes of them."""
+    faces = np.array(faces)
+    dim = len(faces)
+    a, shape, strides, walls = block(dim, seed=7)
+    b, *_ = block(dim, seed=8)
+    b[:, CONTACT] = a[:, CONTACT]
+    last = 1 + 2 * dim
+    filled = b.copy()
+    nodes.fill(filled, shape, strides, dim, faces, walls, 0, last, True)
+    folded = a.copy()
+    nodes.fold(folded, shape, strides, dim, faces, walls, 0, last, True)
+    assert np.vdot(folded[:, :last], filled[:, :last]) == pytest.approx(
+        np.vdot(a[:, :last], filled[:, :last]), rel=1e-12, abs=1e-12
+    )
+
+
+def test_walls_outside_the_window_are_left_alone():
+    records, shape, strides, _ = block(2)
+    faces = np.array([[MIRROR, MIRROR], [STICK, FRICTION]])
+    walls = np.array([[-5, 40], [-5, 40]], dtype=np.int64)
+    start = records.copy()
+    nodes.fold(records, shape, strides, 2, faces, walls, 0, 5, True)
+    nodes.fill(records, shape, strides, 2, faces, walls, 0, 5, True)
+    np.testing.assert_array_equal(records, start)
+
+
+def test_clear_keeps_nothing_but_contact():
+    records, *_ = block(3)
+    start = records.copy()
+    nodes.clear(records)
+    assert (records[:, :CONTACT] == 0).all()
+    np.testing.assert_array_equal(records[:, CONTACT], start[:, CONTACT])
+
+
+@each_set_of_faces
+def test_averages_at_nodes(faces):
+    """Σ w f / Σ w with what lies on ghosts at their images, at the ghosts too; zero where nothing is."""
+    faces = np.array(faces)
+    dim = len(faces)
+    records, shape, strides, walls = block(dim)
+    pairs, average = records[:, :2].copy(), np.full((len(records), 1), np.nan)
+    pairs[::5] = 0.0
+    expected = np.zeros_like(records)
+    expected[:, :2] = pairs
+    nodes.fold(expected, shape, strides, dim, faces, walls, 0, 2, False)
+    weight, sums = expected[:, 0], expected[:, 1]
+    expected[:, 0] = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0)
+    nodes.fill(expected, shape, strides, dim, faces, walls, 0, 1, False)
+    nodes.divide_pairs(pairs, average, shape, strides, dim, faces, walls)
+    np.testing.assert_allclose(average[:, 0], expected[:, 0], rtol=0, atol=1e-13)
+    assert (pairs == 0).all()  # ready for the next average
+
+
+def constrained(velocity, change, contact, faces, friction, walls, solved):
+    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` has a bit an axis."""
+    dim = velocity.shape[-1]
+    for axis in range(dim):
+        for side in range(2):
+            code, k, inward = faces[axis, side], int(walls[axis, side]), 1 - 2 * side
+            v, dv = plane(velocity, axis, k), plane(change, axis, k)
+            if code == MIRROR:
+                v[..., axis] = 0.0
+                if solved:
+                    dv[..., axis] = 0.0
+            elif code == STICK:
+                v[...] = 0.0
+                if solved:
+                    dv[...] = 0.0
+            elif code == FRICTION and not solved:
+                v[..., axis][plane(contact, axis, k) >> axis & 1 > 0] = 0.0
+            elif code == FRICTION:
+                push = np.maximum(-inward * v[..., axis], 0.0)
+                into = push > 0
+                tangent = v.copy()
+                tangent[..., axis] = 0.0
+                slip = np.linalg.norm(tangent, axis=-1)
+                keep = 1 - friction[axis, side] * push / np.where(slip > 0, slip, 1.0)
+                end = np.maximum(keep, 0.0)[..., None] * tangent
+                dv[into] += (end - v)[into]
+                v[into] = end[into]
+
+
+@pytest.mark.parametrize(
+    "faces",
+    [f for f in FACES_2D + FACES_3D if not any(PERIODIC in pair for pair in f)]
+    + [[[FRICTION, FRICTION], [FRICTION, FRICTION], [FRICTION, FRICTION]], [[STICK, STICK], [STICK, MIRROR]]],
+    ids=str,
+)
+def test_momentum_equation_and_conditions_on_the_faces(faces):
+    faces, dt = np.array(faces), 0.03
+    dim = len(faces)
+    friction = np.full((dim, 2), 0.4)
+    records, shape, strides, walls = block(dim)
+    records[::5, 0] = 0.0
+    records[::5, 1:] = 0.0  # empty nodes
+    m = records[:, 0]
+    full = m > 0
+    grid = (*shape, dim)
+    velocity = np.zeros((len(m), dim))
+    velocity[full] = records[full, 1 : 1 + dim] / m[full, None]
+    velocity = velocity.reshape(grid)
+    contact = records[:, CONTACT].reshape(shape).astype(int)
+    force = records[:, 1 + dim : 1 + 2 * dim].copy()
+
+    nodes.momentum_to_velocity(records, shape, strides, dim, faces, walls, friction)
+    constrained(velocity, np.zeros(grid), contact, faces, friction, walls, solved=False)
+    inner = tuple(slice(1, n - 1) if n > 1 else slice(None) for n in shape)
+    found = records.reshape(*shape, NODE)
+    np.testing.assert_allclose(found[inner][..., 1 : 1 + dim], velocity[inner], rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(records[:, 1 + dim : 1 + 2 * dim], force)
+
+    change = np.zeros((len(m), dim))
+    change[full] = dt * force[full] / m[full, None]
+    change = change.reshape(grid)
+    velocity = velocity + change
+    nodes.solve_momentum(records, shape, strides, dim, faces, walls, friction, dt)
+    full = full.reshape(shape)[..., None]  # an empty node keeps its force as change: no particle sees it
+    constrained(velocity, change, contact, faces, friction, walls, solved=True)
+    np.testing.assert_allclose(found[inner][..., 1 : 1 + dim], velocity[inner], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(
+        (found[..., 1 + dim : 1 + 2 * dim] * full)[inner], (change * full)[inner], rtol=0, atol=1e-14
+    )
+
+
+def test_friction_never_turns_the_slip_round():
+    """A wall that pushes hard stops the slip; it neither reverses it nor pulls."""
+    records = np.zeros((9, NODE))
+    records[:, 0] = 1.0
+    shape, strides = (3, 3, 1), (3, 1, 1)
+    walls = np.array([[-9, 9], [0, 9]], dtype=np.int64)
+    faces = np.array([[OPEN, OPEN], [FRICTION, OPEN]])
+    friction = np.array([[0.0, 0.0], [0.5, 0.0]])
+    slip, into = np.array([1.0, 0.2, 1.0]), np.array([-1.0, -1.0, +1.0])
+    for i in range(3):
+        records[3 * i, 1:3] = slip[i], into[i]
+    nodes.solve_momentum(records, shape, strides, 2, faces, walls, friction, 1.0)
+    np.testing.assert_allclose(records[[0, 3, 6], 1], [0.5, 0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(records[[0, 3, 6], 2], [0.0, 0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(records[[0, 3, 6], 3], [-0.5, -0.2, 0.0], atol=1e-15)
+    np.testing.assert_allclose(records[[0, 3, 6], 4], [1.0, 1.0, 0.0], atol=1e-15)
+    assert (records[[0, 3, 6], CONTACT] == [2, 2, 0]).all()  # remembered as the bit of its axis
+
+
+# --- Tensors ------------------------------------------------------------------------------------------------
