@@ -21,6 +21,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from .compile import inline
+from .vectors import multiply_add
 
 SMALLEST = 2.3e-308
 """Least number that has all its digits."""
@@ -56,6 +57,16 @@ def from_bits(typing, i):
     return types.float64(types.int64), generate
 
 
+@intrinsic
+def fused(typing, a, b, c):
+    """a b + c, rounded once where the machine can."""
+
+    def generate(context, builder, signature, arguments):
+        return multiply_add(builder, *arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), generate
+
+
 if numba.config.DISABLE_JIT:
 
     def bits(x):
@@ -64,40 +75,43 @@ if numba.config.DISABLE_JIT:
     def from_bits(i):
         return float(np.int64(i).view(np.float64))
 
+    def fused(a, b, c):
+        return a * b + c
+
 
 @inline()
 def expm1_and_scale(x):
     """e^r - 1 and 2^n, of which e^x is made."""
     x = min(max(x, -708.0), 709.0)
     n = math.floor(x * PER_LN2 + 0.5)
-    r = (x - n * LN2_HIGH) - n * LN2_LOW
+    r = fused(-n, LN2_LOW, x - n * LN2_HIGH)
     q = 1 / 6227020800
-    q = q * r + 1 / 479001600
-    q = q * r + 1 / 39916800
-    q = q * r + 1 / 3628800
-    q = q * r + 1 / 362880
-    q = q * r + 1 / 40320
-    q = q * r + 1 / 5040
-    q = q * r + 1 / 720
-    q = q * r + 1 / 120
-    q = q * r + 1 / 24
-    q = q * r + 1 / 6
-    q = q * r + 1 / 2
-    return r + r * r * q, from_bits((int(n) + BIAS) << MANTISSA)
+    q = fused(q, r, 1 / 479001600)
+    q = fused(q, r, 1 / 39916800)
+    q = fused(q, r, 1 / 3628800)
+    q = fused(q, r, 1 / 362880)
+    q = fused(q, r, 1 / 40320)
+    q = fused(q, r, 1 / 5040)
+    q = fused(q, r, 1 / 720)
+    q = fused(q, r, 1 / 120)
+    q = fused(q, r, 1 / 24)
+    q = fused(q, r, 1 / 6)
+    q = fused(q, r, 1 / 2)
+    return fused(r * r, q, r), from_bits((int(n) + BIAS) << MANTISSA)
 
 
 @inline()
 def exp(x):
     """e^x, which is taken at -708 or 709 beyond them."""
     part, scale = expm1_and_scale(x)
-    return scale + scale * part
+    return fused(scale, part, scale)
 
 
 @inline()
 def expm1(x):
     """e^x - 1, to all digits near zero."""
     part, scale = expm1_and_scale(x)
-    return scale * part + (scale - 1.0)
+    return fused(scale, part, scale - 1.0)
 
 
 @inline()
@@ -112,18 +126,18 @@ def log(x):
     s = (m - 1.0) / (m + 1.0)
     z = s * s
     q = 1 / 25
-    q = q * z + 1 / 23
-    q = q * z + 1 / 21
-    q = q * z + 1 / 19
-    q = q * z + 1 / 17
-    q = q * z + 1 / 15
-    q = q * z + 1 / 13
-    q = q * z + 1 / 11
-    q = q * z + 1 / 9
-    q = q * z + 1 / 7
-    q = q * z + 1 / 5
-    q = q * z + 1 / 3
-    return k * LN2_HIGH + (2 * s + (2 * s * z * q + k * LN2_LOW))
+    q = fused(q, z, 1 / 23)
+    q = fused(q, z, 1 / 21)
+    q = fused(q, z, 1 / 19)
+    q = fused(q, z, 1 / 17)
+    q = fused(q, z, 1 / 15)
+    q = fused(q, z, 1 / 13)
+    q = fused(q, z, 1 / 11)
+    q = fused(q, z, 1 / 9)
+    q = fused(q, z, 1 / 7)
+    q = fused(q, z, 1 / 5)
+    q = fused(q, z, 1 / 3)
+    return fused(k, LN2_HIGH, 2 * s + fused(2 * s * z, q, k * LN2_LOW))
 
 
 @inline()

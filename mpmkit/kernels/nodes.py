@@ -9,8 +9,10 @@ Coulomb wall is a mirror behind the nodes that touch it and open behind the othe
 Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
 
-``nodes`` is (count, NODE); ``shape`` and ``strides`` have three entries, the third 1 in two dimensions.
-``walls[a, side]`` is the index of the wall's plane of nodes, ``faces[a, side]`` one of the codes below.
+``nodes`` is (count, NODE). Nodes that no particle can reach are zero and left out: ``rows`` holds the first
+node and the one after the last of each row that is reached, ``tasks`` cuts the rows into pieces of about
+equal load, and ``mirrors`` lists (ghost, image, node of the wall), face by face from ``face_first`` on.
+``faces[a, side]`` is one of the codes below.
 """
 
 from __future__ import annotations
@@ -20,41 +22,40 @@ import math
 import numpy as np
 from numba import prange
 
-from .compile import function, kernel
+from .compile import CHUNK, chunk_count, function, kernel
 from .scatter import CONTACT, NODE
 
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
 
 
 @kernel()
-def clear(nodes):
+def clear(nodes, rows, tasks):
     """All records to zero, but for what is remembered of contact with a wall."""
-    for i in prange(len(nodes)):
-        for q in range(CONTACT):
-            nodes[i, q] = 0.0
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                for q in range(CONTACT):
+                    nodes[i, q] = 0.0
 
 
-@function()
-def _transfer(nodes, shape, strides, axis, ghost, image, contact, first, last, sign, folding):
+@kernel()
+def _transfer(nodes, mirrors, contact, first, last, sign, folding):
     """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
 
-    Where ``contact`` is the index of a plane of nodes, only behind those that touch the wall along ``axis``.
+    With ``contact``, the bit of an axis, only behind those nodes that touch the wall along it.
     """
-    if not (0 <= ghost < shape[axis] and 0 <= image < shape[axis]):
-        return
-    b, c = (axis + 1) % 3, (axis + 2) % 3
-    for i in range(shape[b]):
-        for j in range(shape[c]):
-            offset = i * strides[b] + j * strides[c]
-            if contact >= 0 and not int(nodes[contact * strides[axis] + offset, CONTACT]) & (1 << axis):
+    n = len(mirrors)
+    for c in prange(chunk_count(n)):
+        for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            ghost, image, wall = mirrors[k]
+            if contact and not int(nodes[wall, CONTACT]) & contact:
                 continue
-            behind, before = nodes[ghost * strides[axis] + offset], nodes[image * strides[axis] + offset]
             for q in range(first, last):
                 if folding:
-                    before[q] += sign[q] * behind[q]
-                    behind[q] = 0.0
+                    nodes[image, q] += sign[q] * nodes[ghost, q]
+                    nodes[ghost, q] = 0.0
                 else:
-                    behind[q] = sign[q] * before[q]
+                    nodes[ghost, q] = sign[q] * nodes[image, q]
 
 
 @function()
@@ -69,60 +70,59 @@ def _parity(face, axis, dim, vectors):
 
 
 @function()
-def _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, folding):
+def _reflect(nodes, faces, mirrors, face_first, first, last, vectors, folding):
+    dim = len(faces)
     for step in range(dim):
         a = step if folding else dim - 1 - step  # filling undoes folding in the opposite order
         for side in range(2):
-            face, wall, inward = faces[a, side], walls[a, side], 1 - 2 * side
-            sign = _parity(face, a, dim, vectors)
-            if face == PERIODIC:
-                cells = walls[a, 1] - walls[a, 0]
-                for depth in range(1 + side):  # the upper wall itself is an image of the lower one
-                    ghost = wall - inward * (1 - depth)
-                    image = walls[a, 0] + (ghost - walls[a, 0]) % cells
-                    _transfer(nodes, shape, strides, a, ghost, image, -1, first, last, sign, folding)
-            elif face != OPEN:
-                ghost, image = wall - inward, wall + inward
-                contact = wall if face == FRICTION and vectors else -1
-                _transfer(nodes, shape, strides, a, ghost, image, contact, first, last, sign, folding)
+            face, f = faces[a, side], 2 * a + side
+            if face_first[f] < face_first[f + 1]:
+                contact = 1 << a if face == FRICTION and vectors else 0
+                of_face = mirrors[face_first[f] : face_first[f + 1]]
+                _transfer(nodes, of_face, contact, first, last, _parity(face, a, dim, vectors), folding)
 
 
 @function()
-def fold(nodes, shape, strides, dim, faces, walls, first, last, vectors):
+def fold(nodes, faces, mirrors, face_first, first, last, vectors):
     """Add what lies on ghost nodes to their images, slots first..last-1, and clear the ghosts.
 
     With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
     """
-    _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, True)
+    _reflect(nodes, faces, mirrors, face_first, first, last, vectors, True)
 
 
 @function()
-def fill(nodes, shape, strides, dim, faces, walls, first, last, vectors):
+def fill(nodes, faces, mirrors, face_first, first, last, vectors):
     """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
-    _reflect(nodes, shape, strides, dim, faces, walls, first, last, vectors, False)
+    _reflect(nodes, faces, mirrors, face_first, first, last, vectors, False)
 
 
 @function()
-def _constrain(nodes, shape, strides, dim, faces, walls, friction, solved):
+def _constrain(nodes, faces, mirrors, face_first, friction, solved):
     """Boundary conditions on the velocity and, once ``solved``, on its change."""
-    for a in range(dim):
+    for a in range(len(faces)):
         for side in range(2):
-            face = faces[a, side]
-            inward, k = 1 - 2 * side, walls[a, side]
-            if face in (OPEN, PERIODIC) or not 0 <= k < shape[a]:
+            face, f = faces[a, side], 2 * a + side
+            if face != PERIODIC and face_first[f] < face_first[f + 1]:
+                of_face = mirrors[face_first[f] : face_first[f + 1]]
+                _hold(nodes, len(faces), of_face, face, a, 1 - 2 * side, friction[a, side], solved)
+
+
+@kernel()
+def _hold(nodes, dim, mirrors, face, a, inward, coefficient, solved):
+    """The condition of one face on the nodes in its plane."""
+    n = len(mirrors)
+    for c in prange(chunk_count(n)):
+        for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            node = nodes[mirrors[k, 2]]
+            if face == FRICTION:
+                _touch(node, dim, a, inward, coefficient, solved)
                 continue
-            b, c = (a + 1) % 3, (a + 2) % 3
-            for i in range(shape[b]):
-                for j in range(shape[c]):
-                    node = nodes[k * strides[a] + i * strides[b] + j * strides[c]]
-                    if face == FRICTION:
-                        _touch(node, dim, a, inward, friction[a, side], solved)
-                        continue
-                    for d in range(dim):
-                        if d == a or face == STICK:
-                            node[1 + d] = 0.0
-                            if solved:
-                                node[1 + dim + d] = 0.0
+            for d in range(dim):
+                if d == a or face == STICK:
+                    node[1 + d] = 0.0
+                    if solved:
+                        node[1 + dim + d] = 0.0
 
 
 @function()
@@ -159,40 +159,48 @@ def _touch(node, dim, a, inward, coefficient, solved):
 
 
 @kernel()
-def divide_pairs(pairs, average, shape, strides, dim, faces, walls):
+def divide_pairs(pairs, average, rows, tasks, faces, mirrors, face_first):
     """Σ w f / Σ w at every node, zero where nothing is, with what lies on ghosts folded in and filled back.
 
     Leaves ``pairs`` empty, for the next average.
     """
-    fold(pairs, shape, strides, dim, faces, walls, 0, 2, False)
-    for i in prange(len(pairs)):
-        weight = pairs[i, 0]
-        average[i, 0] = pairs[i, 1] / weight if weight > 0.0 else 0.0
-        pairs[i, 0] = pairs[i, 1] = 0.0
-    fill(average, shape, strides, dim, faces, walls, 0, 1, False)
+    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                weight = pairs[i, 0]
+                average[i, 0] = pairs[i, 1] / weight if weight > 0.0 else 0.0
+                pairs[i, 0] = pairs[i, 1] = 0.0
+    fill(average, faces, mirrors, face_first, 0, 1, False)
 
 
 @kernel()
-def momentum_to_velocity(nodes, shape, strides, dim, faces, walls, friction):
+def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, face_first, friction):
     """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are."""
-    for i in prange(len(nodes)):
-        m = nodes[i, 0]
-        if m > 0.0:
-            for d in range(dim):
-                nodes[i, 1 + d] /= m
-    _constrain(nodes, shape, strides, dim, faces, walls, friction, False)
-    fill(nodes, shape, strides, dim, faces, walls, 1, 1 + dim, True)
+    dim = len(faces)
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                m = nodes[i, 0]
+                if m > 0.0:
+                    for d in range(dim):
+                        nodes[i, 1 + d] /= m
+    _constrain(nodes, faces, mirrors, face_first, friction, False)
+    fill(nodes, faces, mirrors, face_first, 1, 1 + dim, True)
 
 
 @kernel()
-def solve_momentum(nodes, shape, strides, dim, faces, walls, friction, dt):
+def solve_momentum(nodes, rows, tasks, faces, mirrors, face_first, friction, dt):
     """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled."""
-    for i in prange(len(nodes)):
-        m = nodes[i, 0]
-        if m > 0.0:
-            for d in range(dim):
-                change = dt * nodes[i, 1 + dim + d] / m
-                nodes[i, 1 + d] += change
-                nodes[i, 1 + dim + d] = change
-    _constrain(nodes, shape, strides, dim, faces, walls, friction, True)
-    fill(nodes, shape, strides, dim, faces, walls, 1, 1 + 2 * dim, True)
+    dim = len(faces)
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                m = nodes[i, 0]
+                if m > 0.0:
+                    for d in range(dim):
+                        change = dt * nodes[i, 1 + dim + d] / m
+                        nodes[i, 1 + d] += change
+                        nodes[i, 1 + dim + d] = change
+    _constrain(nodes, faces, mirrors, face_first, friction, True)
+    fill(nodes, faces, mirrors, face_first, 1, 1 + 2 * dim, True)

@@ -11,13 +11,13 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic, models, register_model
 
 LANES = 8
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INT = ir.IntType(32)
-_MAY_FUSE = ("contract",)
 
 
 class Vector(types.Type):
@@ -48,6 +48,17 @@ def _spread(builder, scalar):
     nothing = ir.Constant(_VECTOR, ir.Undefined)
     first = builder.insert_element(nothing, scalar, ir.Constant(_INT, 0))
     return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
+
+
+def multiply_add(builder, a, b, c):
+    """a b + c of numbers or vectors, as one instruction where the machine has it.
+
+    It is asked for by name, and not left to the compiler's freedom to contract: of a kernel there are two
+    versions, one that has just been compiled and one that was kept, and what it contracts differs in them.
+    """
+    name = "llvm.fmuladd.v8f64" if a.type == _VECTOR else "llvm.fmuladd.f64"
+    kind = ir.FunctionType(a.type, [a.type] * 3)
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), [a, b, c])
 
 
 @intrinsic
@@ -86,18 +97,17 @@ def scale(typing, factor, vector):
     """factor × vector."""
 
     def generate(context, builder, signature, arguments):
-        return builder.fmul(_spread(builder, arguments[0]), arguments[1], flags=_MAY_FUSE)
+        return builder.fmul(_spread(builder, arguments[0]), arguments[1])
 
     return _vector(types.float64, vector), generate
 
 
 @intrinsic
 def plus(typing, total, factor, vector):
-    """total + factor × vector."""
+    """total + factor × vector, rounded once where the machine can."""
 
     def generate(context, builder, signature, arguments):
-        product = builder.fmul(_spread(builder, arguments[1]), arguments[2], flags=_MAY_FUSE)
-        return builder.fadd(arguments[0], product, flags=_MAY_FUSE)
+        return multiply_add(builder, _spread(builder, arguments[1]), arguments[2], arguments[0])
 
     return _vector(total, types.float64, vector), generate
 

@@ -93,21 +93,22 @@ class Window:
     _stores: list[np.ndarray] = field(init=False)
 
     def reach(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First and last node along each axis that particles in these cells can touch."""
+        """First and last node along each axis that particles in these cells, ``(..., dim)``, can touch.
+
+        A particle's box reaches at most half a cell beyond its own cell. Where the image of a ghost is
+        reached, so is the ghost: what is folded can be filled back.
+        """
         grid = self.grid
-        low = np.where(grid.periodic, -GHOST, np.maximum(lowest_cell - 1, -GHOST))
-        high = np.where(grid.periodic, grid.cells + GHOST, np.minimum(highest_cell + 2, grid.cells + GHOST))
+        low, high = lowest_cell - 1, highest_cell + 2
+        low = np.where(grid.periodic | (low <= GHOST), -GHOST, low)
+        high = np.where(grid.periodic | (high >= grid.cells - GHOST), grid.cells + GHOST, high)
         return low, high
 
     def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
-        """Lay the window over the nodes that particles in these cells can touch, ghosts included.
-
-        A particle's box reaches at most half a cell beyond its own cell.
-        """
+        """Lay the window over the nodes that particles in these cells can touch; all are zero."""
         grid = self.grid
         contacts = self._contacts()
         low, high = self.reach(lowest_cell, highest_cell)
-        # The image of a ghost lies one node inside the face, so the window that has the one has the other.
         size = [int(n) for n in high - low + 1]
         size[-1] += 2  # rows of pairs are as wide as a vector: they reach beyond what a particle touches
         size += [1] * (3 - grid.dim)
@@ -123,7 +124,8 @@ class Window:
             store[: count * width].reshape(count, width)
             for store, width in zip(self._stores, (NODE, PAIR, 1), strict=True)
         )
-        self.nodes[:, CONTACT] = 0.0
+        self.nodes[:] = 0.0
+        self.average[:] = 0.0
         if contacts is not None:
             self._restore_contacts(*contacts)
 

@@ -16,11 +16,11 @@ from ..kernels.locate import LOST, STRAYED, locate, wrap
 from ..kernels.scatter import NODE
 from .grid import Grid, Window
 from .particles import Particles
+from .reach import Reach
+from .tasks import TASKS, cuts
 
 DRIFT = 1
 """Cells that a particle may drift out of the box of the last sort."""
-TASKS = 64
-"""Pieces of about equal load into which the blocks of a colour are cut, whatever the number of threads."""
 
 
 class Scattered(Exception):
@@ -36,7 +36,7 @@ class Scattered(Exception):
 
 
 class Layout:
-    """Keeps the particles sorted and the window over them."""
+    """Keeps the particles sorted, the window over them, and what of it they can reach."""
 
     def __init__(self, grid: Grid, particles: Particles, window: Window) -> None:
         self.grid = grid
@@ -103,6 +103,7 @@ class Layout:
         particles.reorder(order, scratch)
         self._verdicts = np.empty((count, 2), dtype=np.int64)
         self._share_out(first_of_colour)
+        self.reach = Reach(self.window, cell, DRIFT)
         self.sorts += 1
         return None
 
@@ -111,10 +112,7 @@ class Layout:
         load = (self._block_first - self._block_first[:, :1]).sum(axis=0)
         self.tasks = np.empty((len(self.particles.groups), len(first_of_colour) - 1, TASKS + 1), np.int64)
         for colour, (begin, end) in enumerate(pairwise(first_of_colour)):
-            wanted = np.linspace(load[begin], load[end], TASKS + 1)
-            cuts = begin + np.searchsorted(load[begin : end + 1], wanted)
-            cuts[0], cuts[-1] = begin, end
-            self.tasks[:, colour] = self._block_first[:, cuts]
+            self.tasks[:, colour] = self._block_first[:, begin + cuts(load[begin : end + 1])]
 
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""

@@ -86,10 +86,11 @@ class SceneOperations:
     # --- Particles to nodes
 
     def map_to_grid(self, *, forces: bool = True) -> None:
-        nodes.clear(self.window.nodes)
+        reach = self.layout.reach
+        nodes.clear(self.window.nodes, reach.rows, reach.tasks)
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
-        nodes.momentum_to_velocity(self.window.nodes, *self._faces(), self.grid.friction)
+        nodes.momentum_to_velocity(self.window.nodes, *reach.arguments, self.grid.friction)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
@@ -110,16 +111,13 @@ class SceneOperations:
         )  # fmt: skip
 
     def _fold(self, first: int, last: int) -> None:
-        nodes.fold(self.window.nodes, *self._faces(), first, last, True)
-
-    def _faces(self) -> tuple:
-        w = self.window
-        return w.shape, w.strides, self.grid.dim, self.grid.faces, w.walls
+        reach = self.layout.reach
+        nodes.fold(self.window.nodes, reach.faces, reach.mirrors, reach.face_first, first, last, True)
 
     # --- Nodes
 
     def solve_momentum(self, dt: float) -> None:
-        nodes.solve_momentum(self.window.nodes, *self._faces(), self.grid.friction, dt)
+        nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
 
     # --- Nodes to particles
 
@@ -243,7 +241,7 @@ class SceneOperations:
         """Σ w N f / Σ w N into ``window.average``; zero where nothing is."""
         w, tables = self.window, (self.base, self.weight)
         self._scatter_pairs(w.pairs, w.strides, w.lower, self.layout.tasks, *tables, weight, values)
-        nodes.divide_pairs(w.pairs, w.average, *self._faces())
+        nodes.divide_pairs(w.pairs, w.average, *self.layout.reach.arguments)
 
     def _average_at_particles(self) -> np.ndarray:
         w, out = self.window, np.empty(len(self.particles))

@@ -1,0 +1,137 @@
+"""The nodes that particles can reach: none too few, ghosts and images alike, and it changes no result."""
+
+from __future__ import annotations
+
+import copy
+from itertools import product
+
+import numpy as np
+import pytest
+
+from mpmkit.case import parse_case
+from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
+from mpmkit.solver import reach as reach_module
+from mpmkit.solver.grid import Grid, Window
+from mpmkit.solver.layout import DRIFT
+from mpmkit.solver.reach import Reach
+from mpmkit.solver.simulation import Simulation
+
+FACES = [
+    [[OPEN, OPEN], [MIRROR, OPEN]],
+    [[MIRROR, MIRROR], [STICK, FRICTION]],
+    [[PERIODIC, PERIODIC], [MIRROR, OPEN]],
+    [[MIRROR, STICK], [OPEN, MIRROR], [MIRROR, OPEN]],
+    [[PERIODIC, PERIODIC], [MIRROR, MIRROR], [PERIODIC, PERIODIC]],
+]
+
+
+def reached(faces, cells, seed):
+    """Grid, window and reach of three small heaps of particles in a domain of that many cells."""
+    dim = len(faces)
+    grid = Grid(
+        np.zeros(dim), np.array(cells), 1.0, np.array(faces), np.zeros((dim, 2)), ("x", "y", "z")[:dim]
+    )
+    rng = np.random.default_rng(seed)
+    middle = rng.integers(0, cells, (3, dim))
+    cell = np.clip(np.repeat(middle, 20, axis=0) + rng.integers(-1, 2, (60, dim)), 0, np.array(cells) - 1)
+    window = Window(grid)
+    window.cover(cell.min(axis=0) - DRIFT, cell.max(axis=0) + DRIFT)
+    return grid, window, cell, Reach(window, cell.astype(np.int32), DRIFT)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("faces", FACES, ids=str)
+def test_every_node_that_a_particle_can_touch_is_in_a_row(faces, seed):
+    grid, window, cell, reach = reached(faces, [40, 30, 20][: len(faces)], seed)
+    inside = np.zeros(int(np.prod(window.shape)), dtype=int)
+    for begin, end in reach.rows:
+        inside[begin:end] += 1
+    assert inside.max() == 1  # no node is gone through twice
+    assert (np.diff(reach.tasks) >= 0).all()
+    assert list(reach.tasks[[0, -1]]) == [0, len(reach.rows)]
+    last = grid.cells + 1
+    offsets = np.array(list(product(range(-1 - DRIFT, 3 + DRIFT), repeat=grid.dim)))
+    nodes = (cell[:, None, :] + offsets).reshape(-1, grid.dim)
+    nodes = nodes[((nodes >= -1) & (nodes <= last)).all(axis=1)]
+    assert inside[(nodes - window.lower) @ window.strides[: grid.dim]].all()
+    if PERIODIC not in np.array(faces):
+        assert inside.sum() < 0.7 * len(inside)  # and most others are not
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("faces", FACES, ids=str)
+def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces, seed):
+    grid, window, cell, reach = reached(faces, [12, 9, 7][: len(faces)], seed)
+    inside = np.zeros(window.shape[: grid.dim], dtype=bool)
+    for begin, end in reach.rows:
+        inside.reshape(-1)[begin:end] = True
+    for face, (first, behind) in enumerate(zip(reach.face_first[:-1], reach.face_first[1:], strict=True)):
+        axis, side = divmod(face, 2)
+        kind, (lower, upper) = grid.faces[axis, side], window.walls[axis]
+        expected = []
+        for place in map(np.array, np.argwhere(inside)):
+            image, k = place.copy(), place[axis]
+            if kind == PERIODIC and (k < lower if side == 0 else upper <= k <= upper + 1):
+                image[axis] += grid.cells[axis] * (1 - 2 * side)
+            elif kind not in (OPEN, PERIODIC) and (k < lower if side == 0 else upper < k <= upper + 1):
+                image[axis] = 2 * window.walls[axis, side] - k
+            else:
+                continue
+            expected.append([place @ window.strides[: grid.dim], image @ window.strides[: grid.dim]])
+        found = reach.mirrors[first:behind, :2].tolist()
+        held = [pair for pair in expected if pair in found]
+        assert sorted(found) == sorted(held)
+        assert len(found) == len(set(map(tuple, found)))
+        for ghost, image in expected:
+            if [ghost, image] not in found:  # within a row, but between what particles can touch
+                assert not reach_module._touched(window, cell, DRIFT).reshape(-1)[[ghost, image]].any()
+        assert inside.reshape(-1)[reach.mirrors[first:behind, :2]].all()
+
+
+@pytest.mark.parametrize("order", ["usl", "usf", "musl"])
+@pytest.mark.parametrize(
+    "faces",
+    [
+        {"z_min": "slip", "x_min": "symmetry", "y_max": "stick"},
+        {
+            "z_min": {"kind": "friction", "coefficient": 0.3},
+            "x_min": "periodic",
+            "x_max": "periodic",
+            "y_max": "slip",
+        },
+    ],
+    ids=["walls", "periodic"],
+)
+def test_leaving_out_the_others_changes_no_bit(faces, order, monkeypatch):
+    """A block that is thrown at a corner and back, on all nodes of the window and on those in reach."""
+    case = {
+        "space": "3d",
+        "until": 1.0,
+        "grid": {"cell_size": 0.1, "domain": {"x": [0, 1.2], "y": [0, 1.2], "z": [0, 1]}, "faces": faces},
+        "bodies": [
+            {
+                "shape": {"kind": "box", "lower": lower, "upper": upper},
+                "velocity": velocity,
+                "material": {"law": "newtonian", "density": 1000, "viscosity": 50, "sound_speed": 20},
+                "particles_per_cell": 8,
+            }
+            for lower, upper, velocity in (
+                ([0, 0.6, 0], [0.3, 1.2, 0.4], [-1, 1, -1]),
+                ([0.6, 0.4, 0.5], [0.9, 0.7, 0.9], [2, -2, 0]),
+            )
+        ],
+        "scheme": {"shape": "cpgimp", "order": order},
+    }
+    fewer = Simulation(parse_case(copy.deepcopy(case)))
+    all_of_them = Simulation(parse_case(case))
+    whole = reach_module._touched
+    for _ in range(60):
+        fewer.advance()
+        monkeypatch.setattr(reach_module, "_touched", lambda *given: np.ones_like(whole(*given)))
+        all_of_them.advance()
+        monkeypatch.setattr(reach_module, "_touched", whole)
+    assert fewer.operations.layout.sorts > 1
+    for name in ("position", "velocity", "stress", "volume_ratio"):
+        np.testing.assert_array_equal(
+            getattr(fewer.particles, name), getattr(all_of_them.particles, name), err_msg=name
+        )
