@@ -7,8 +7,10 @@ import time as clock
 from statistics import median
 from typing import Any
 
+from .advice import cheaper_models, expected_error
 from .blame import blaming_plugins
 from .case.model import Case
+from .cautions import cautions
 from .errors import CaseError, GuardStop
 from .memory import expected_bytes, require_memory
 from .pilot import Growth, pilot
@@ -19,6 +21,10 @@ TRIAL_SECONDS = 1.0
 """How long the scene is run to measure its speed on this machine, after one step to compile."""
 PILOT_SECONDS = 10.0
 """How long its coarse copy is run at the most, to see how the cost grows on the way."""
+WORTH_ADVICE = 10.0
+"""Seconds that a run takes at the least, for cheaper models to be looked at."""
+WORTH_A_LINE = 0.8
+"""Part of the run's time that a cheaper model takes at the most."""
 WORTH_A_PILOT = 1.0
 """Seconds that a run takes at the least, for a pilot to be worth its own."""
 
@@ -33,7 +39,9 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
         ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
         each, at the start), ``memory_bytes`` (at the end), ``expected_seconds``, ``remarks`` (of the laws),
-        ``warnings``.
+        ``warnings``, ``expected_error`` (of the spread, see ``advice``; None if not known), ``cheaper``
+        (models, each with ``name``, ``why``, ``changes`` by path, ``options`` for the command line,
+        ``particles``, ``steps``, ``expected_seconds`` and ``expected_error``).
 
     Raises:
         CaseError: the case cannot be run.
@@ -41,15 +49,36 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     """
     require_memory(case)
     with blaming_plugins(case):
-        return _plan(Simulation(case), threads)
+        cost = _cost(Simulation(case), threads)
+    return cost | {"expected_error": expected_error(case), "cheaper": _cheaper(case, cost, threads)}
 
 
-def _plan(simulation: Simulation, threads: int | None) -> dict[str, Any]:
+def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict[str, Any]]:
+    """Cost of every cheaper model that is worth a line, measured as that of the case is."""
+    if cost["expected_seconds"] < WORTH_ADVICE:
+        return []
+    lines = []
+    for model in cheaper_models(case):
+        try:
+            with blaming_plugins(model.case):
+                found = _cost(Simulation(model.case), threads)
+        except (CaseError, GuardStop):  # it cannot be run after all, and is no advice
+            continue
+        if found["expected_seconds"] < WORTH_A_LINE * cost["expected_seconds"]:
+            lines.append(
+                {"name": model.name, "why": model.why, "changes": model.changes, "options": model.options}
+                | {key: found[key] for key in ("particles", "steps", "expected_seconds")}
+                | {"expected_error": expected_error(model.case)}
+            )
+    return lines
+
+
+def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
     case, particles = simulation.case, len(simulation.particles)
     use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
-    warnings, remarks = simulation.warnings(), simulation.remarks()
+    warnings, remarks = [*cautions(case), *simulation.warnings()], simulation.remarks()
     if not math.isfinite(case.until / step):
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from .blame import blaming_plugins
 from .case.model import Case
+from .cautions import cautions
 from .conclusion import conclude, salvage
 from .errors import GuardStop, Interrupted, OutputError, reason
 from .memory import require_memory
@@ -160,7 +161,7 @@ def _announce(simulation: Simulation, threads: int) -> None:
     )  # fmt: skip
     for sentence in simulation.remarks():
         LOGGER.info("%s", sentence)
-    for sentence in simulation.warnings():
+    for sentence in [*cautions(simulation.case), *simulation.warnings()]:
         LOGGER.warning("%s", sentence)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 
 import click
 
@@ -46,7 +47,28 @@ def command(
         *cost["remarks"],
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
-    click.echo("\n".join(lines))
+    click.echo("\n".join([*lines, *_advice(case, cost)]))
+
+
+def _advice(case: str, cost: dict) -> list[str]:
+    """A table of the scene as it stands and of cheaper models, and how to ask for them."""
+    if not cost["cheaper"]:
+        return []
+    models = [{"name": "as it stands"} | cost, *cost["cheaper"]]
+    width = max(len(model["name"]) for model in models)
+    lines = ["", f"{'model':{width}}  {'particles':>10}  {'steps':>10}  {'time':>8}  error of the spread*"]
+    for model in models:
+        error = model["expected_error"]
+        lines.append(
+            f"{model['name']:{width}}  {model['particles']:>10,}  {_counted(model['steps']):>10}  "
+            f"{duration(max(1.0, model['expected_seconds'])):>8}  "
+            f"{'not known' if error is None else f'{100 * error:.2g} %'}"
+        )
+    lines += ["* to expect: that of the most similar member of the shipped study of a slump", ""]
+    for model in cost["cheaper"]:
+        options = " ".join(f"--set {shlex.quote(option)}" for option in model["options"])
+        lines += [f"{model['name']}: {model['why']}", f"    mpmkit run {shlex.quote(case)} {options}"]
+    return lines
 
 
 def _at_end(cost: dict) -> str:

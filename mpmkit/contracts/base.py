@@ -36,6 +36,10 @@ class Plugin(BaseModel):
     api_version: ClassVar[int]
     """Version of the contracts that it is written for: its own number, so that an old one is noticed."""
 
+    def cautions(self, case: Any) -> list[str]:
+        """Sentences on what is known to fail where a case, whose fields are those of case files, uses it."""
+        return []
+
     @model_validator(mode="before")
     @classmethod
     def _accept_shorthand(cls, value: Any) -> Any:

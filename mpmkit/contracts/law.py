@@ -55,6 +55,9 @@ class ConstitutiveLaw(Plugin):
     uses_equation_of_state: ClassVar[bool] = True
     needs_deformation_gradient: ClassVar[bool] = False
     state: ClassVar[Mapping[str, StateVariable]] = {}
+    exact_form: ClassVar[str | None] = None
+    """Of a regularised law: the name of the one with the same flow curve and an exact yield stress, for
+    ``plan`` to offer."""
 
     @abstractmethod
     def update_stress(

@@ -23,6 +23,9 @@ class ShapeFunction(Plugin):
     support: ClassVar[int]
     """Nodes that a particle touches along each axis, 2 to 4: ``base`` is its own cell or the one before."""
 
+    smooth: ClassVar[bool] = True
+    """Whether the gradients of the weights are continuous as a particle moves from cell to cell."""
+
     @property
     def particle_domain(self) -> str:
         """How half-sizes follow the deformation: ``strain`` (normal strain along each axis), ``fixed``,

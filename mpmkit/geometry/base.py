@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from typing import ClassVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -28,6 +29,9 @@ class Shape(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    turned: ClassVar[bool] = False
+    """Whether in 3-D it is a body of revolution about the vertical through ``middle``."""
 
     def check(self, space: Space) -> None:
         """Refuse a space that cannot hold the shape; for use within pydantic's validators.
@@ -78,6 +82,18 @@ class Shape(BaseModel):
         """
         self._require(space)
         return float(self._volume(space))
+
+    def middle(self, space: Space) -> tuple[float, float] | None:
+        """Where in 3-D planes x = const and y = const cut it into equal quarters, m; None if they do not.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        return self._middle() if space.dim == 3 else None
+
+    def _middle(self) -> tuple[float, float] | None:
+        return None
 
     def _require(self, space: Space) -> None:
         if problem := self._problem(space):

@@ -33,6 +33,10 @@ class Box(Shape):
             )
         return self
 
+    def _middle(self) -> tuple[float, float]:
+        x, y, _ = ((low + high) / 2 for low, high in zip(self.lower, self.upper, strict=True))
+        return x, y
+
     def _problem(self, space: Space) -> str | None:
         if problem := self._wrong_length("lower", self.lower, space):
             return problem

@@ -19,6 +19,11 @@ class Sphere(Shape):
     centre: list[float] = quantity("m", "centre", min_length=2, max_length=3)
     radius: float = quantity("m", "radius", gt=0)
 
+    turned = True
+
+    def _middle(self) -> tuple[float, float]:
+        return self.centre[0], self.centre[1]
+
     def _problem(self, space: Space) -> str | None:
         return self._wrong_length("centre", self.centre, space) or self._off_axis(
             "centre", self.centre, space

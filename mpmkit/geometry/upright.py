@@ -30,6 +30,12 @@ class Upright(Shape):
     def _foot(self, space: Space) -> list[float]:
         return [0.0] * space.dim if self.base is None else self.base
 
+    turned = True
+
+    def _middle(self) -> tuple[float, float]:
+        x, y = (self.base or [0.0, 0.0])[:2]
+        return x, y
+
     def _problem(self, space: Space) -> str | None:
         foot = self._foot(space)
         return self._wrong_length("base", foot, space) or self._off_axis("base", foot, space)

@@ -17,6 +17,8 @@ class Bingham(GeneralisedNewtonianLaw):
     api_version = 1
     citation = "Bingham, Fluidity and Plasticity (1922); Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
+    exact_form = "bingham-evp"
+
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)
     plastic_viscosity: float = quantity("Pa s", "plastic viscosity mu_p", ge=0)
     regularisation: float = quantity("s", "Papanastasiou's exponent m", gt=0, default=1000.0)

@@ -19,6 +19,8 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
     api_version = 1
     citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
+    exact_form = "herschel-bulkley-evp"
+
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)
     consistency: float = quantity("Pa s^n", "consistency k", ge=0)
     flow_index: float = quantity("1", "flow index n", gt=0)

@@ -25,6 +25,15 @@ class USL(UpdateOrder):
     acoustic_fraction = 0.4
     viscous_fraction = 0.2
 
+    def cautions(self, case) -> list[str]:
+        if case.scheme.shape.smooth:
+            return []
+        return [
+            f"order 'usl' with shape '{case.scheme.shape.name}' takes strains from nodes that are nearly "
+            "empty, and throws out particles where material flows from cell to cell; order 'usf' or 'musl', "
+            "or shape 'cpgimp', does not"
+        ]
+
     def step(self, ops: Operations, dt: float) -> None:
         ops.map_to_grid()
         ops.solve_momentum(dt)

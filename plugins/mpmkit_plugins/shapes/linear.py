@@ -16,6 +16,7 @@ class Linear(ShapeFunction):
     api_version = 1
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
     support = 2
+    smooth = False
 
     def fill(self, position, half_size, cell_size, base, weight, gradient) -> None:
         _fill(position, 1 / cell_size, base, weight, gradient)

@@ -10,6 +10,9 @@ class PIC(VelocityUpdate):
     api_version = 1
     citation = "Harlow, Methods Comput. Phys. 3 (1964) 319-343"
 
+    def cautions(self, case) -> list[str]:
+        return ["velocity 'pic' damps like a viscosity of Δx²/Δt, more the smaller the step; 'apic' does not"]
+
     def map_to_particles(self, ops: Operations, dt: float) -> None:
         ops.advance(dt, flip=0.0)
 

@@ -17,6 +17,14 @@ class Own(VolumetricTreatment):
     api_version = 1
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
+    def cautions(self, case) -> list[str]:
+        if "stick" not in case.grid.faces.values():
+            return []
+        return [
+            "volumetric 'own' locks at a stick face, where the velocity must vary within a cell; "
+            "'nodal-average' does not"
+        ]
+
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:
         return field
 

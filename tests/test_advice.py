@@ -1,0 +1,214 @@
+"""Cheaper models of a scene: the same scene indeed, offered where they are admissible, and their errors."""
+
+from __future__ import annotations
+
+import csv
+import json
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpmkit.advice import cheaper_models, expected_error
+from mpmkit.case import load_case, parse_case
+from mpmkit.cautions import cautions
+from mpmkit.contracts import ElastoviscoplasticLaw
+from mpmkit.memory import expected_particles
+from mpmkit.plan import plan
+from mpmkit.provenance import resolved
+
+CASES = Path(__file__).parents[1] / "cases"
+ROUND = {"kind": "cylinder", "radius": 0.1, "height": 0.3, "base": [0.1, 0.2, 0.0]}
+BRICK = {"kind": "box", "lower": [0.0, 0.1, 0.0], "upper": [0.2, 0.3, 0.2]}
+FLUID = {"law": "bingham", "density": 2000, "yield_stress": 100, "plastic_viscosity": 20, "sound_speed": 50}
+
+
+def scene(*shapes, **changes):
+    """Bodies at x = 0.1, y = 0.2 in a domain whose middle that is."""
+    bodies = [{"shape": shape, "material": FLUID | {"regularisation": 100}} for shape in shapes or (ROUND,)]
+    data = {
+        "space": "3d",
+        "until": 0.5,
+        "grid": {"cell_size": 0.01, "domain": {"x": [-0.3, 0.5], "y": [-0.2, 0.6], "z": [0, 0.35]}},
+        "bodies": bodies,
+    }
+    return parse_case(data, [f"{path}={json.dumps(value)}" for path, value in changes.items()])
+
+
+def names(case):
+    return [model.name for model in cheaper_models(case)]
+
+
+def mass(case):
+    return sum(body.material.density * body.shape.volume(case.space_) for body in case.bodies)
+
+
+def test_a_body_of_revolution_and_a_quarter_are_the_same_material():
+    case = scene()
+    models = {model.name: model.case for model in cheaper_models(case)}
+    assert mass(models["axisymmetric"]) == pytest.approx(mass(case), rel=1e-12)
+    assert expected_particles(models["a quarter"]) == pytest.approx(expected_particles(case) / 4, rel=1e-9)
+    assert expected_particles(models["axisymmetric"]) == pytest.approx(4 * 0.1 * 0.3 / 0.01**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"bodies.0.velocity": [0.1, 0, 0]},
+        {"bodies.0.velocity": {"amplitude": [0, 0, 1], "wave_vector": [1, 0, 0]}},
+        {"gravity": [1.0, 0, -9.81]},
+        {"grid.faces": {"x_min": "periodic", "x_max": "periodic"}},
+        {"grid.faces": {"x_min": "slip"}},
+    ],
+    ids=json.dumps,
+)
+def test_what_is_not_symmetric_is_not_cut(changes):
+    assert {"axisymmetric", "a quarter"}.isdisjoint(names(scene(**changes)))
+
+
+def test_a_fall_is_symmetric():
+    fallen = scene(**{"bodies.0.velocity": [0, 0, -1.5]})
+    models = {model.name: model.case for model in cheaper_models(fallen)}
+    assert models["axisymmetric"].bodies[0].velocity == [0.0, -1.5]
+    assert models["a quarter"].bodies[0].velocity == [0, 0, -1.5]
+
+
+def test_walls_on_both_sides_leave_a_quarter_and_no_body_of_revolution():
+    faces = {"x_min": "stick", "x_max": "stick", "y_min": "slip", "y_max": "slip", "z_min": "stick"}
+    found = {model.name: model.case for model in cheaper_models(scene(**{"grid.faces": faces}))}
+    assert "axisymmetric" not in found
+    quarter = found["a quarter"].grid
+    assert quarter.domain == {"x": [0.1, 0.5], "y": [0.2, 0.6], "z": [0, 0.35]}
+    assert quarter.faces == faces | {"x_min": "symmetry", "y_min": "symmetry"}
+
+
+def test_a_brick_has_a_quarter_and_does_not_turn():
+    found = names(scene(BRICK))
+    assert "a quarter" in found
+    assert "axisymmetric" not in found
+
+
+def test_two_bodies_need_one_axis():
+    sphere = {"kind": "sphere", "radius": 0.02, "centre": [0.1, 0.2, 0.33]}
+    assert "axisymmetric" in names(scene(ROUND, sphere))
+    found = names(scene(ROUND, sphere | {"centre": [0.15, 0.2, 0.33]}))
+    assert {"axisymmetric", "a quarter"}.isdisjoint(found)
+
+
+def test_a_quarter_model_can_be_turned_but_not_cut_again():
+    found = names(load_case(CASES / "slump_quarter.json"))
+    assert "axisymmetric" in found
+    assert "a quarter" not in found
+
+
+@pytest.mark.parametrize("file", sorted(CASES.glob("*.json")), ids=lambda file: file.stem)
+def test_the_options_as_typed_make_the_model(file):
+    """And each keeps to the rules of cases: none is refused by the reader."""
+    case = load_case(file)
+    for model in cheaper_models(case):
+        assert resolved(load_case(file, model.options)) == resolved(model.case), model.name
+        assert expected_particles(model.case) <= expected_particles(case)
+
+
+def test_exact_yield_has_the_same_flow_curve():
+    case = scene(**{"scheme.time_step": {"fraction": 0.3, "ignore": ["viscous"]}})
+    (exact,) = (model.case for model in cheaper_models(case) if model.name == "exact yield")
+    law, rates = exact.bodies[0].material.constitutive_law, np.geomspace(0.1, 100, 20)
+    assert isinstance(law, ElastoviscoplasticLaw)
+    np.testing.assert_allclose(law.flow_curve(rates), 100 + 20 * rates, rtol=1e-12)
+    assert exact.scheme.time_step.ignore == []
+
+
+def test_together_has_the_cheapest_of_every_kind():
+    together = cheaper_models(load_case(CASES / "slump_ferreira.json"))[-1].case
+    assert together.space == "axisymmetric"
+    assert together.height / together.grid.cell_size == pytest.approx(15)
+    assert together.bodies[0].material.law == "herschel-bulkley-evp"
+    assert together.bodies[0].material.sound_speed.mach == 0.1
+
+
+def test_where_there_is_nothing_to_save_there_is_no_advice():
+    assert cheaper_models(load_case(CASES / "slump_fast.json")) == []
+    assert cheaper_models(load_case(CASES / "vibrating_bar.json")) == []
+
+
+# --- The error to expect
+
+
+def rows():
+    with (files("mpmkit.advice") / "slump_errors.csv").open() as lines:
+        return list(csv.DictReader(lines))
+
+
+SOUNDS = {"mach 0.1": {"mach": 0.1}, "factor 10": {"factor": 10}, "factor 20": {"factor": 20}}
+
+
+@pytest.mark.parametrize(
+    "row", [row for row in rows() if row["dim"] == "2"][::7], ids=lambda row: "-".join(row.values())
+)
+def test_a_member_of_the_study_has_its_own_error(row):
+    law = ["bodies.0.material.law=herschel-bulkley", "bodies.0.material.regularisation=100"]
+    cell = 0.3 / int(row["cells"])
+    case = load_case(
+        CASES / "slump.json",
+        [
+            f"grid.cell_size={cell}",
+            f'grid.domain={{"r": [0, 0.36], "z": [0, {0.3 + cell}]}}',
+            *(f"scheme.{kind}={row[kind]}" for kind in ("shape", "order", "volumetric")),
+            f"bodies.0.material.sound_speed={json.dumps(SOUNDS[row['sound']])}",
+            *(law if row["law"] == "relaxed" else []),
+        ],
+    )
+    assert expected_error(case) == (float(row["error"]) if row["error"] else None)
+
+
+def test_errors_are_known_of_what_the_study_has_and_of_nothing_else():
+    fine = load_case(CASES / "slump.json")
+    assert expected_error(fine) == expected_error(
+        load_case(CASES / "slump.json", ["grid.cell_size=0.01", "grid.domain.z=[0, 0.31]"])
+    )
+    for changes in (
+        ["grid.cell_size=0.03", "grid.domain.z=[0, 0.33]"],
+        ['bodies.0.material.sound_speed={"factor": 5}'],
+        ['bodies.0.material.sound_speed={"mach": 0.3}'],
+        ["scheme.shape=linear"],
+    ):
+        assert expected_error(load_case(CASES / "slump.json", changes)) is None, changes
+    assert expected_error(load_case(CASES / "two_discs.json")) is None
+
+
+def test_what_the_study_saw_fail_is_cautioned_against():
+    """Every member that was stopped, and none that finished."""
+    for row in rows():
+        schemes = [f"scheme.{kind}={row[kind]}" for kind in ("shape", "order", "volumetric")]
+        said = " ".join(cautions(load_case(CASES / "slump.json", schemes)))
+        assert ("throws out" in said) == (row["fate"] != "finished"), row
+
+
+def test_more_that_is_known_to_fail():
+    stick = ['grid.faces={"z_min": "stick"}']
+    assert "locks" in " ".join(cautions(load_case(CASES / "slump.json", [*stick, "scheme.volumetric=own"])))
+    assert cautions(load_case(CASES / "slump.json", stick)) == []
+    assert "damps" in " ".join(cautions(load_case(CASES / "slump.json", ["scheme.velocity=pic"])))
+
+
+# --- In the plan
+
+
+def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
+    monkeypatch.setattr("mpmkit.plan.WORTH_ADVICE", 0.0)
+    monkeypatch.setattr("mpmkit.plan.TRIAL_SECONDS", 0.2)
+    cost = plan(scene(**{"grid.cell_size": 0.02, "grid.domain.z": [0, 0.36], "until": 0.2}), threads=1)
+    lines = {line["name"]: line for line in cost["cheaper"]}
+    assert {"a quarter", "axisymmetric", "exact yield", "all of these"} <= set(lines)
+    assert lines["a quarter"]["particles"] == pytest.approx(cost["particles"] / 4, rel=0.05)
+    assert lines["exact yield"]["steps"] < cost["steps"] / 5  # no viscous limit
+    assert lines["all of these"]["expected_seconds"] < lines["a quarter"]["expected_seconds"]
+    json.dumps(cost, allow_nan=False)
+
+
+def test_a_run_of_seconds_needs_no_advice():
+    cost = plan(load_case(CASES / "slump_fast.json", ["until=0.05"]), threads=1)
+    assert cost["cheaper"] == []
+    assert cost["expected_error"] == pytest.approx(0.012, abs=0.001)
