@@ -103,7 +103,7 @@ class Layout:
         particles.reorder(order, scratch)
         self._verdicts = np.empty((count, 2), dtype=np.int64)
         self._share_out(first_of_colour)
-        self.reach = Reach(self.window, cell, DRIFT)
+        self.reach = self._reach()
         self.sorts += 1
         return None
 
@@ -113,6 +113,13 @@ class Layout:
         self.tasks = np.empty((len(self.particles.groups), len(first_of_colour) - 1, TASKS + 1), np.int64)
         for colour, (begin, end) in enumerate(pairwise(first_of_colour)):
             self.tasks[:, colour] = self._block_first[:, begin + cuts(load[begin : end + 1])]
+
+    def _reach(self) -> Reach:
+        """The nodes that particles can touch for as long as none has strayed: see ``kernels.locate``."""
+        occupied = (np.diff(self._block_first, axis=1) > 0).any(axis=0)
+        cell = self._block_cell[occupied]
+        low, high = cell - DRIFT, cell + sort.BLOCK_WIDTH - 1 + DRIFT
+        return Reach(self.window, np.maximum(low, self._low), np.minimum(high, self._high))
 
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""

@@ -22,16 +22,16 @@ class Reach:
         face_first: ``(2 dim + 1,)``, the first of ``mirrors`` of each face, and their number.
     """
 
-    def __init__(self, window: Window, cell: np.ndarray, drift: int) -> None:
+    def __init__(self, window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """
         Args:
             window: the nodes that are stored.
-            cell: ``(n, dim)``, the cells of all particles.
-            drift: cells that a particle may move until the nodes in its reach are found anew.
+            lowest_cell: ``(n, dim)``, of boxes of cells, in one of which every particle is.
+            highest_cell: the same at their other end.
         """
         dim = window.grid.dim
         planes = [list(_planes(window, axis, side)) for axis in range(dim) for side in range(2)]
-        touched = _touched(window, cell, drift)
+        touched = _touched(window, lowest_cell, highest_cell)
         for face, of_face in enumerate(planes):
             _close(touched, face // 2, of_face)
         self.rows = _rows(touched)
@@ -43,18 +43,12 @@ class Reach:
         self.arguments = (self.rows, self.tasks, self.faces, self.mirrors, self.face_first)
 
 
-def _touched(window: Window, cell: np.ndarray, drift: int) -> np.ndarray:
-    """Which nodes of the window particles can touch: from one below their cell to two above it."""
+def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> np.ndarray:
+    """Which nodes of the window particles in these boxes of cells can touch."""
     touched = np.zeros(window.shape[: window.grid.dim], dtype=bool)
-    strides = np.array(window.strides[: window.grid.dim])
-    touched.reshape(-1)[cell @ strides - window.lower @ strides] = True
-    for axis in range(touched.ndim):
-        found = np.moveaxis(touched, axis, 0)
-        occupied, n = found.copy(), len(found)
-        for away in range(1, 3 + drift):
-            found[away:] |= occupied[: n - away]
-            if away <= 1 + drift:
-                found[: n - away] |= occupied[away:]
+    low, high = window.reach(lowest_cell, highest_cell)
+    for begin, end in zip(low - window.lower, high - window.lower + 1, strict=True):
+        touched[tuple(map(slice, begin, end))] = True
     return touched
 
 
