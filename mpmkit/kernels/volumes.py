@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, kernel
@@ -15,6 +16,25 @@ def stretch(rate, dt, initial_volume, volume_ratio, volume):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             volume_ratio[p] *= 1 + dt * rate[p]
             volume[p] = initial_volume[p] * volume_ratio[p]
+
+
+def assign(field: np.ndarray, values: np.ndarray) -> None:
+    """``field[:] = values``, ``(n,)``, by all threads; values that a plug-in made may have any shape.
+
+    Raises:
+        ValueError: they have another one.
+    """
+    if np.shape(values) != field.shape:
+        raise ValueError(f"an array of shape {field.shape} was needed, not one of {np.shape(values)}")
+    _assign(field, values)
+
+
+@kernel()
+def _assign(field, values):
+    n = len(field)
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            field[p] = values[p]
 
 
 @kernel()

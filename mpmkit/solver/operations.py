@@ -103,7 +103,7 @@ class SceneOperations:
     def _map(self, momentum: bool, forces: bool) -> None:
         p, w = self.particles, self.window
         if forces:
-            np.copyto(p.mapped_pressure, self._treated(p.pressure))
+            volumes.assign(p.mapped_pressure, self._treated(p.pressure))
         self._scatter(
             w.nodes, w.strides, w.lower, self.layout.tasks, self.base, self.weight, self.gradient, self.hoop,
             p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
@@ -171,7 +171,7 @@ class SceneOperations:
         for group in p.groups:
             part = group.part
             if group.law.uses_equation_of_state:
-                p.pressure[part] = group.pressure(p.volume_ratio[part])
+                volumes.assign(p.pressure[part], group.pressure(p.volume_ratio[part]))
             elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])

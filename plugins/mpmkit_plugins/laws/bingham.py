@@ -1,8 +1,10 @@
 """Bingham's plastic, regularised."""
 
 import numpy as np
+from numba import prange
 
 from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
+from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 
 from .regularisation import yield_viscosity
 
@@ -24,7 +26,19 @@ class Bingham(GeneralisedNewtonianLaw):
     regularisation: float = quantity("s", "Papanastasiou's exponent m", gt=0, default=1000.0)
 
     def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
-        return yield_viscosity(shear_rate, self.yield_stress, self.regularisation) + self.plastic_viscosity
+        viscosity = np.empty(len(shear_rate))
+        _viscosity(shear_rate, self.yield_stress, self.plastic_viscosity, self.regularisation, viscosity)
+        return viscosity
+
+
+@kernel()
+def _viscosity(shear_rate, yield_stress, plastic_viscosity, regularisation, viscosity):
+    n = len(shear_rate)
+    for c in prange(chunk_count(n)):
+        rate = shear_rate[c * CHUNK : min(n, (c + 1) * CHUNK)]
+        mu = viscosity[c * CHUNK : min(n, (c + 1) * CHUNK)]
+        for p in range(len(rate)):
+            mu[p] = yield_viscosity(rate[p], yield_stress, regularisation) + plastic_viscosity
 
 
 @hookimpl

@@ -1,10 +1,13 @@
 """Herschel and Bulkley's fluid, regularised."""
 
 import numpy as np
+from numba import prange
 
 from mpmkit.contracts import GeneralisedNewtonianLaw, hookimpl, quantity
+from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
+from mpmkit.kernels.elementary import power
 
-from .regularisation import power_viscosity, yield_viscosity
+from .regularisation import yield_viscosity
 
 
 class HerschelBulkley(GeneralisedNewtonianLaw):
@@ -27,10 +30,21 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
     regularisation: float = quantity("s", "Papanastasiou's exponent m", gt=0, default=1000.0)
 
     def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
-        m = self.regularisation
-        return yield_viscosity(shear_rate, self.yield_stress, m) + power_viscosity(
-            shear_rate, self.consistency, self.flow_index, m
-        )
+        viscosity, m = np.empty(len(shear_rate)), self.regularisation
+        least = 1 / m if self.flow_index < 1 else 0.0
+        _viscosity(shear_rate, self.yield_stress, self.consistency, self.flow_index, m, least, viscosity)
+        return viscosity
+
+
+@kernel()
+def _viscosity(shear_rate, yield_stress, consistency, flow_index, regularisation, least, viscosity):
+    n = len(shear_rate)
+    for c in prange(chunk_count(n)):
+        rate = shear_rate[c * CHUNK : min(n, (c + 1) * CHUNK)]
+        mu = viscosity[c * CHUNK : min(n, (c + 1) * CHUNK)]
+        for p in range(len(rate)):
+            power_law = consistency * power(max(rate[p], least), flow_index - 1.0)
+            mu[p] = yield_viscosity(rate[p], yield_stress, regularisation) + power_law
 
 
 @hookimpl
