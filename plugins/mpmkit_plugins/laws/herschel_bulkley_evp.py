@@ -7,7 +7,7 @@ from numba import prange
 
 from mpmkit.contracts import ElastoviscoplasticLaw, hookimpl, quantity
 from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
-from mpmkit.kernels.elementary import SMALLEST, exp, log
+from mpmkit.kernels.elementary import SMALLEST, exp, fused, log
 
 ROUNDING = 1e-15
 MOST_ITERATIONS = 60
@@ -72,15 +72,15 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index, ite
         for _ in range(iterations):
             for p in range(len(given)):
                 target = log(max(given[p] - yield_stress, SMALLEST))
-                a, b = flow_index * found[p] + ln_k, found[p] + ln_g
+                a, b = fused(flow_index, found[p], ln_k), found[p] + ln_g
                 less = exp(-abs(a - b))  # the smaller term over the larger one
                 value = max(a, b) + log(1.0 + less)
-                slope = (flow_index + less if a > b else 1.0 + flow_index * less) / (1.0 + less)
+                slope = (flow_index + less if a > b else fused(flow_index, less, 1.0)) / (1.0 + less)
                 found[p] -= (value - target) / slope
         for p in range(len(given)):
             excess = given[p] - yield_stress
             # Never more than without flow; and what is no number stays none.
-            flows = yield_stress + min(exp(flow_index * found[p] + ln_k), excess)
+            flows = yield_stress + min(exp(fused(flow_index, found[p], ln_k)), excess)
             found[p] = flows if excess > 0.0 else given[p]
 
 
