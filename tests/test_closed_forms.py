@@ -1,15 +1,14 @@
 """The closed forms that docs/comparisons draws beside slumps, against numbers, integrals and limits."""
 
-import importlib.util
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-PATH = Path(__file__).parents[1] / "docs" / "figures" / "comparisons" / "closed_forms.py"
-SPEC = importlib.util.spec_from_file_location("closed_forms", PATH)
-forms = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(forms)
+sys.path.insert(0, str(Path(__file__).parents[1] / "docs" / "figures" / "comparisons"))
+import closed_forms as forms
+import thin_film
 
 DENSITY, YIELD = 2574.0, 188.91
 WEIGHT = DENSITY * forms.GRAVITY
@@ -84,6 +83,11 @@ def test_time_of_a_sheet_that_thins():
 def test_huppert_is_inverted():
     time = float(forms.t500_stick(50.0, DENSITY))
     assert 0.894 * (WEIGHT * forms.VOLUME**3 * time / (3 * 50.0)) ** (1 / 8) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_the_film_without_a_yield_stress_is_hupperts():
+    assert thin_film.t500_film(0.0, DENSITY) == pytest.approx(float(forms.t500_stick(1.0, DENSITY)), rel=0.01)
+    assert thin_film.t500_film(50.0, DENSITY) > thin_film.t500_film(20.0, DENSITY) > 0.03
 
 
 def test_correlations_of_sedran_and_de_larrard():
