@@ -76,11 +76,7 @@ def say(plot: Axes, title: str, x: str, y: str) -> None:
 def save(sheet: Figure, name: str) -> None:
     """Write docs/images/comparisons/NAME.png, with as few colours as the lines need."""
     sheet.canvas.draw()
-    image = (
-        Image.fromarray(np.asarray(sheet.canvas.buffer_rgba()))
-        .convert("RGB")
-        .quantize(256, Image.Quantize.MAXCOVERAGE)
-    )
+    image = Image.fromarray(np.asarray(sheet.canvas.buffer_rgba())).convert("RGB").quantize(256)
     image.save(DOCS / "images" / "comparisons" / f"{name}.png", optimize=True)
 
 
