@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from .output import FrameWriter, History, RunDirectory, Variable
@@ -38,14 +40,25 @@ class Recorder:
     """
 
     def __init__(
-        self, simulation: Simulation, attributes: dict[str, str], directory: RunDirectory | None
+        self,
+        simulation: Simulation,
+        attributes: dict[str, str],
+        directory: RunDirectory | None,
+        frames: dict[str, float] | None = None,
     ) -> None:
+        """
+        Args:
+            simulation: what is recorded.
+            attributes: global attributes of the history.
+            directory: where the history and the frames are written; nothing is without one.
+            frames: of a run that goes on, the times of those that are there, by file.
+        """
         case = simulation.case
         settings, until = case.output, case.until
         self.simulation = simulation
         self.directory = directory
         self.history = History(COLUMNS, attributes, case.space_.axes)
-        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_)
+        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, frames)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
         self._last_row = self._last_frame = -1  # steps
@@ -57,6 +70,21 @@ class Recorder:
             self._add_row()
         if self.frames is not None and self._frames_due.passed(now):
             self._add_frame()
+
+    def state(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """What has been recorded, as arrays and as words, for a checkpoint."""
+        arrays = {f"history.{name}": rows for name, rows in self.history.state().items()}
+        frames = {} if self.frames is None else dict(self.frames.frames)
+        return arrays, {"frames": frames, "last_row": self._last_row, "last_frame": self._last_frame}
+
+    def restore(self, arrays: dict[str, np.ndarray], words: dict[str, Any]) -> None:
+        """Take up what had been recorded by the present step of the simulation."""
+        rows = {key.removeprefix("history."): a for key, a in arrays.items() if key.startswith("history.")}
+        self.history.restore(rows)
+        self._last_row, self._last_frame = words["last_row"], words["last_frame"]
+        now = self.simulation.time + 0.5 * self.simulation.time_step
+        self._rows_due.passed(now)
+        self._frames_due.passed(now)
 
     def finish(self) -> None:
         """Add the state in which the run ended, and write the history."""

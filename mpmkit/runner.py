@@ -1,62 +1,32 @@
-"""A whole run: advance a case to its end and keep what it did, in memory or in a run directory."""
+"""A whole run: a case to its end, in memory or in a run directory, from the start or from a checkpoint."""
 
 from __future__ import annotations
 
 import logging
-import time as clock
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .blame import blaming_plugins
 from .case.model import Case
-from .cautions import cautions
-from .conclusion import conclude, salvage
-from .errors import GuardStop, Interrupted, OutputError, reason
+from .errors import CaseError, GuardStop, OutputError, reason
+from .execution import Listener, Progress, execute
 from .memory import require_memory
 from .output import RunDirectory, open_log, write_json
 from .provenance import attributes, resolved
 from .recorder import Recorder
+from .resume import case_of, differences, last_checkpoint
+from .saver import Saver
 from .solver.simulation import Simulation
+from .solver.state import restore
+from .stopwatch import Stopwatch
 from .threads import use_threads
 
 if TYPE_CHECKING:
     import xarray
 
+__all__ = ["Listener", "Progress", "resume", "run"]
+
 LOGGER = logging.getLogger("mpmkit")
-COMPRESSIBLE = 0.1
-"""Mach number above which the density may change by more than half a percent as the material flows."""
-TOLD_EVERY = 0.2
-"""Seconds between two calls of a listener."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """What a progress display is told, a few times a second."""
-
-    time: float
-    until: float
-    steps: int
-    particle_steps_per_second: float
-    seconds_left: float
-
-
-Listener = Callable[[Progress], None]
-
-
-class Stopwatch:
-    """Wall time of a run from its first step on, s: what it takes to load and compile is not the run's."""
-
-    def __init__(self) -> None:
-        self._begin: float | None = None
-
-    def start(self) -> None:
-        self._begin = clock.monotonic()
-
-    @property
-    def elapsed(self) -> float:
-        return 0.0 if self._begin is None else clock.monotonic() - self._begin
 
 
 def run(
@@ -66,6 +36,7 @@ def run(
     overwrite: bool = False,
     threads: int | None = None,
     listen: Listener | None = None,
+    checkpoint_every: float | None = None,
 ) -> xarray.Dataset:
     """Run a case to its end.
 
@@ -75,6 +46,8 @@ def run(
         overwrite: whether an earlier run in ``out`` may be replaced.
         threads: threads to use; as many as pay off unless told.
         listen: told of the progress a few times a second.
+        checkpoint_every: wall time, s, between two checkpoints in ``out``, from which ``resume`` goes on; one
+            is written on Ctrl-C in any case.
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
@@ -90,9 +63,10 @@ def run(
     with blaming_plugins(case):
         simulation = Simulation(case)
     threads = use_threads(threads, len(simulation.particles))
+    watch = Stopwatch()
     if out is None:
         recorder = Recorder(simulation, attributes(case, threads), None)
-        _execute(recorder, threads, listen)
+        execute(recorder, watch, threads, listen, None)
         return recorder.history.dataset()
     directory = RunDirectory(Path(out), overwrite)
     with directory.claimed(), open_log(directory.log):
@@ -102,18 +76,67 @@ def run(
         except OutputError as error:
             LOGGER.error("%s", error)
             raise
-        try:
-            _execute(recorder, threads, listen)
-        except GuardStop:
-            _report(case, directory)
-            raise
-        _report(case, directory)
+        _execute(recorder, watch, threads, listen, checkpoint_every)
     return recorder.history.dataset()
 
 
-def _report(case: Case, directory: RunDirectory) -> None:
+def resume(
+    directory: str | Path,
+    *,
+    case: Case | None = None,
+    threads: int | None = None,
+    listen: Listener | None = None,
+    checkpoint_every: float | None = None,
+) -> xarray.Dataset:
+    """Go on with a run from its last checkpoint; it ends with the bits that it would have had without a stop.
+
+    Args:
+        directory: of the run.
+        case: what the caller takes the case to be; that of the directory unless told.
+        threads, listen, checkpoint_every: as for ``run``.
+
+    Returns:
+        The history of the whole run.
+
+    Raises:
+        CaseError: there is no checkpoint, or it is of another case, or of other versions of what runs it.
+        GuardStop, OutputError: as of ``run``.
+    """
+    path = Path(directory)
+    found = case_of(path)
+    if case is not None and (apart := differences(resolved(found), resolved(case))):
+        raise CaseError(f"the case is not that of the run in '{path}': {apart[0]}")
+    require_memory(found)
+    with RunDirectory(path).claimed(resume=True):
+        arrays, words = last_checkpoint(path, found)
+        with open_log(RunDirectory(path).log):
+            with blaming_plugins(found):
+                simulation = Simulation(found)
+            restore(simulation, arrays)
+            threads = use_threads(threads, len(simulation.particles))
+            said = attributes(found, threads)
+            recorder = Recorder(simulation, said, RunDirectory(path), words["frames"])
+            recorder.restore(arrays, words)
+            _execute(recorder, Stopwatch(words["wall_time"]), threads, listen, checkpoint_every)
+    return recorder.history.dataset()
+
+
+def _execute(
+    recorder: Recorder, watch: Stopwatch, threads: int, listen: Listener | None, every: float | None
+) -> None:
+    """Run to the end in a directory, and draw the pictures of it even if a guard stopped it."""
+    try:
+        execute(recorder, watch, threads, listen, Saver(recorder, watch, every))
+    except GuardStop:
+        _report(recorder)
+        raise
+    _report(recorder)
+
+
+def _report(recorder: Recorder) -> None:
     """Draw the pictures. They can be drawn again from the directory: none is worth the outcome of a run."""
-    if not case.output.report:
+    case, directory = recorder.simulation.case, recorder.directory
+    if not case.output.report or directory is None:
         return
     try:
         from .report import write_report
@@ -121,79 +144,3 @@ def _report(case: Case, directory: RunDirectory) -> None:
         write_report(directory.path)
     except Exception as error:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
-
-
-def _execute(recorder: Recorder, threads: int, listen: Listener | None) -> None:
-    simulation, directory = recorder.simulation, recorder.directory
-    case = simulation.case
-    watch = Stopwatch()
-    try:
-        with blaming_plugins(case, lambda: (simulation.steps, simulation.time)):
-            _announce(simulation, threads)
-            _advance(simulation, recorder, watch, listen)
-        conclude(recorder, "finished", watch.elapsed)
-    except GuardStop as stop:
-        LOGGER.error("%s", stop, exc_info=stop.__cause__)
-        salvage(recorder, stop.guard, watch.elapsed)
-        raise
-    except KeyboardInterrupt:
-        salvage(recorder, "interrupted", watch.elapsed)
-        kept = "" if directory is None else f"; the results up to then are in '{directory.path}'"
-        raise Interrupted(f"interrupted at t = {simulation.time:.6g} s{kept}") from None
-    except OutputError as error:
-        LOGGER.error("%s", error)
-        salvage(recorder, "output-error", watch.elapsed)
-        raise
-    except Exception as error:
-        LOGGER.error("%s", reason(error), exc_info=True)
-        salvage(recorder, "error", watch.elapsed)
-        raise
-
-
-def _announce(simulation: Simulation, threads: int) -> None:
-    limit = simulation.limits.as_dict().get(simulation.limited_by)
-    share = (
-        "" if limit is None else f" ({simulation.time_step / limit:.3g} of the {simulation.limited_by} limit)"
-    )
-    LOGGER.info(
-        "%s: %d particles, step %.4g s%s, threads: %d",
-        simulation.case.name, len(simulation.particles), simulation.time_step, share, threads,
-    )  # fmt: skip
-    for sentence in simulation.remarks():
-        LOGGER.info("%s", sentence)
-    for sentence in [*cautions(simulation.case), *simulation.warnings()]:
-        LOGGER.warning("%s", sentence)
-
-
-def _advance(simulation: Simulation, recorder: Recorder, watch: Stopwatch, listen: Listener | None) -> None:
-    until = simulation.case.until
-    recorder.record()
-    simulation.advance(until)  # the first step loads or compiles the kernels: the clock starts behind it
-    watch.start()
-    told = clock.monotonic()
-    recorder.record()
-    warned = False
-    while until - simulation.time > 1e-9 * until:
-        simulation.advance(until - simulation.time)
-        recorder.record()
-        if simulation.mach_number > COMPRESSIBLE and not warned:
-            warned = True
-            LOGGER.warning(
-                "the Mach number is %.3g at t = %.4g s: the material flows as if it were compressible; "
-                "a larger sound_speed makes it less so",
-                simulation.mach_number, simulation.time,
-            )  # fmt: skip
-        now = clock.monotonic()
-        if listen is not None and now - told > TOLD_EVERY:
-            told = now
-            listen(_progress(simulation, watch.elapsed))
-    simulation.check()
-    if listen is not None:
-        listen(_progress(simulation, watch.elapsed))
-
-
-def _progress(simulation: Simulation, elapsed: float) -> Progress:
-    until = simulation.case.until
-    done = simulation.time / until
-    speed = simulation.particle_steps / elapsed
-    return Progress(simulation.time, until, simulation.steps, speed, elapsed * (1 - done) / done)

@@ -1,8 +1,12 @@
-"""A length of time as a person says it."""
+"""Lengths of time, as a person says and types them."""
 
 from __future__ import annotations
 
 import math
+import re
+from typing import Any
+
+import click
 
 YEAR = 365.25 * 86400
 """s"""
@@ -18,3 +22,23 @@ def duration(seconds: float) -> str:
     if days:
         return f"{days} day{'s' * (days > 1)}, {hours}:{minutes:02d}:{rest:02d}"
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+UNITS = {"": 1.0, "s": 1.0, "min": 60.0, "h": 3600.0}
+
+
+class Seconds(click.ParamType):
+    """A length of time as it is typed: 60s, 10min, 1.5h, or a number of seconds."""
+
+    name = "time"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        if isinstance(value, float):
+            return value
+        found = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)\s*(s|min|h)?", str(value).strip())
+        if found is None or float(found[1]) <= 0:
+            self.fail(f"{value} is no time above zero, such as 60s, 10min or 1h", parameter, context)
+        return float(found[1]) * UNITS[found[2] or ""]
+
+
+SECONDS = Seconds()

@@ -21,19 +21,23 @@ class FrameWriter:
     Args:
         directory: the ``frames/`` of a run; made if it is not there.
         space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, 0, b).
+        frames: times by the names of their files, of a run that goes on; all others there are removed.
     """
 
-    def __init__(self, directory: Path, space: Space) -> None:
+    def __init__(self, directory: Path, space: Space, frames: Mapping[str, float] | None = None) -> None:
         self.directory = Path(directory)
         self._planar = space.dim == 2
-        self._frames: dict[str, float] = {}
+        self.frames: dict[str, float] = dict(frames or {})
         try:
             self.directory.mkdir(parents=True, exist_ok=True)
             # The list goes first: a list without its frames would be worse than frames without a list.
             for old in (self.directory / LIST_NAME, *self.directory.glob("frame_*.vtu")):
-                old.unlink(missing_ok=True)
+                if old.name not in self.frames:
+                    old.unlink(missing_ok=True)
         except OSError as error:
             raise cannot_write(self.directory, error) from error
+        if self.frames:
+            self._write_list()
 
     def write(self, time: float, step: int, fields: Mapping[str, np.ndarray], position: np.ndarray) -> Path:
         """Write the particles as they are at a time, and list the frame.
@@ -55,7 +59,7 @@ class FrameWriter:
         path = self.directory / f"frame_{step:06d}.vtu"
         with replacing(path) as partial:
             meshio.write(partial, mesh, file_format="vtu", binary=True)
-        self._frames[path.name] = float(time)
+        self.frames[path.name] = float(time)
         self._write_list()
         return path
 
@@ -67,7 +71,7 @@ class FrameWriter:
     def _write_list(self) -> None:
         root = ET.Element("VTKFile", type="Collection", version="0.1")
         collection = ET.SubElement(root, "Collection")
-        for name, time in self._frames.items():
+        for name, time in self.frames.items():
             # repr gives back the very same float when it is read
             ET.SubElement(collection, "DataSet", timestep=repr(time), group="", part="0", file=name)
         ET.indent(root)

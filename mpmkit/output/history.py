@@ -74,6 +74,25 @@ class History:
         for name, field in self._particles.items():
             field.append(np.array(particles[name], dtype=float))
 
+    def state(self) -> dict[str, np.ndarray]:
+        """The rows so far as arrays, for a checkpoint."""
+        found = {"time": np.array(self._times)}
+        found |= {f"row.{name}": np.array(rows) for name, rows in self._rows.items()}
+        for name, fields in (self._particles or {}).items():
+            found[f"lengths.{name}"] = np.array([len(field) for field in fields])
+            found[f"particles.{name}"] = np.concatenate(fields)
+        return found
+
+    def restore(self, state: Mapping[str, np.ndarray]) -> None:
+        """Take up the rows of a checkpoint."""
+        self._times = state["time"].tolist()
+        self._rows = {name: list(state[f"row.{name}"]) for name in self._rows}
+        names = [key.partition(".")[2] for key in state if key.startswith("particles.")]
+        self._particles = {
+            name: np.split(state[f"particles.{name}"], np.cumsum(state[f"lengths.{name}"])[:-1])
+            for name in names
+        }
+
     def dataset(self) -> xarray.Dataset:
         """The rows so far: dims ``(time)``, ``(time, component)``, ``(time, particle, …)``."""
         import xarray

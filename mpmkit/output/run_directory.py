@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import CaseError, OutputError
 from .atomic import cannot_write
+from .checkpoints import Checkpoints
 from .frames import LIST_NAME
 from .lock import LOCK_NAME, Locked, locked
 
@@ -49,18 +50,25 @@ class RunDirectory:
         return self.path / "report"
 
     @property
+    def checkpoints(self) -> Path:
+        return self.path / "checkpoints"
+
+    @property
     def log(self) -> Path:
         return self.path / "run.log"
 
     @contextmanager
-    def claimed(self) -> Iterator[None]:
+    def claimed(self, resume: bool = False) -> Iterator[None]:
         """Claim the directory, and keep every other run out of it inside the block.
+
+        With ``resume`` what is in it is of the same run, and stays.
 
         Raises:
             CaseError: where something is there that must not be overwritten.
             OutputError: where another run is at work, or the directory cannot be made or cleared.
         """
-        self._make()  # what is refused anyway is refused before a lock is put into it
+        if not resume:
+            self._make()  # what is refused anyway is refused before a lock is put into it
         with ExitStack() as held:
             try:
                 held.enter_context(locked(self.path))
@@ -71,7 +79,8 @@ class RunDirectory:
                 ) from None
             except OSError as error:
                 raise cannot_write(self.path, error) from error
-            self.claim()
+            if not resume:
+                self.claim()
             yield
 
     def claim(self) -> None:
@@ -113,7 +122,7 @@ class RunDirectory:
 
     @property
     def _results(self) -> tuple[Path, ...]:
-        return self.history, self.summary, self.frames, self.report, self.log
+        return self.history, self.summary, self.frames, self.report, self.checkpoints, self.log
 
     def _clear(self) -> None:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
@@ -125,6 +134,7 @@ class RunDirectory:
                 written += [*directory.glob(pattern), *directory.glob(PARTIAL), directory / LIST_NAME]
         for path in (*written, self.case, self.log):
             path.unlink(missing_ok=True)
+        Checkpoints(self.checkpoints).remove()
         for directory in (self.frames, self.report):
             with suppress(OSError):  # it is not there, or something of the user's is in it
                 directory.rmdir()

@@ -1,0 +1,40 @@
+"""``mpmkit rerun``."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import click
+
+from . import options
+
+
+@click.command("rerun")
+@click.argument("directory", type=click.Path())
+@click.option("--out", type=click.Path(), metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
+@options.threads
+@options.overwrite
+@options.quiet
+def command(directory: str, out: str | None, threads: int | None, overwrite: bool, quiet: bool) -> None:
+    """Repeat the run in DIRECTORY from what it holds, and say whether it comes to the same bits.
+
+    The exit status is 1 where it does not.
+    """
+    from ..rerun import first_difference, history_of, made_differently
+    from ..resume import case_of
+    from .run import perform
+
+    path = Path(directory)
+    case, before = case_of(path), history_of(path)
+    target = Path(out) if out is not None else path.with_name(f"{path.resolve().name}-rerun")
+    for sentence in made_differently(before, case, threads or 1):
+        click.echo(f"not as it was: {sentence}")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    perform(target, quiet, resumed=False, case=case, overwrite=overwrite, threads=threads,
+            checkpoint_every=None)  # fmt: skip
+    apart = first_difference(before, history_of(target))
+    if apart is not None:
+        click.echo(f"not the same: {apart}")
+        raise click.exceptions.Exit(1)
+    click.echo(f"the same bits, in {before.sizes['time']} rows of the history")

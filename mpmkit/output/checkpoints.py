@@ -1,0 +1,114 @@
+"""Checkpoints: from where a run that was stopped goes on. Each has a checksum, and the last two are kept."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import logging
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..errors import CaseError
+from .atomic import replacing
+
+LOGGER = logging.getLogger("mpmkit")
+KEPT = 2
+"""Should the last one be damaged, there is the one before."""
+MAGIC = b"mpmkit checkpoint 1 sha256 "
+WORDS = "words"
+"""Entry of the archive that holds what is no array, as JSON."""
+
+
+class Damaged(Exception):
+    """A file that is no checkpoint, or only a part of one."""
+
+
+class Checkpoints:
+    """The checkpoints of one run.
+
+    A file is a line with a checksum and an archive of NumPy's; nothing in it is ever executed.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = Path(directory)
+
+    def write(self, step: int, arrays: Mapping[str, np.ndarray], words: Mapping[str, Any]) -> None:
+        """Add a checkpoint, and remove those that are older than the one before.
+
+        Raises:
+            OutputError: where it cannot be written; those there are stay.
+        """
+        content = io.BytesIO()
+        text = np.frombuffer(json.dumps(words).encode(), dtype=np.uint8)
+        np.savez(content, allow_pickle=False, **{WORDS: text, **arrays})
+        body = content.getbuffer()
+        path = self.directory / f"step_{step:012d}.checkpoint"
+        with replacing(path) as partial:
+            self.directory.mkdir(exist_ok=True)
+            with partial.open("wb") as file:
+                file.write(MAGIC + hashlib.sha256(body).hexdigest().encode() + b"\n")
+                file.write(body)
+                file.flush()
+                os.fsync(file.fileno())  # or the rename may outlive a power cut, and the content not
+        for old in self.paths()[KEPT:]:
+            with suppress(OSError):
+                old.unlink()
+
+    def newest(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """Arrays and words of the last checkpoint that is whole.
+
+        Raises:
+            CaseError: there is none.
+        """
+        for path in self.paths():
+            try:
+                return read(path)
+            except Damaged as damage:
+                LOGGER.warning("the checkpoint '%s' %s; the one before it is used", path, damage)
+        raise CaseError(f"'{self.directory}' has no checkpoint to go on from")
+
+    def paths(self) -> list[Path]:
+        """Files of the checkpoints, the newest first."""
+        return sorted(self.directory.glob("step_*.checkpoint"), reverse=True)
+
+    def remove(self) -> None:
+        """Remove all of them, and their directory if nothing else is in it."""
+        with suppress(OSError):
+            for path in (*self.paths(), *self.directory.glob(".*.partial")):
+                path.unlink()
+            self.directory.rmdir()
+
+
+def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and words of a checkpoint.
+
+    Raises:
+        Damaged: it cannot be read, or is not what was written.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise Damaged(f"cannot be read: {error.strerror}") from error
+    head, _, body = content.partition(b"\n")
+    if not head.startswith(MAGIC):
+        raise Damaged("is none")
+    if hashlib.sha256(body).hexdigest().encode() != head[len(MAGIC) :]:
+        raise Damaged("is damaged: its checksum is another")
+    try:
+        with np.load(io.BytesIO(body), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        return arrays, json.loads(arrays.pop(WORDS).tobytes())
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        BadZipFile,
+    ) as error:  # ValueError: objects, that would be unpickled
+        raise Damaged("holds what no checkpoint does") from error

@@ -1,0 +1,71 @@
+"""Repeating a run from its directory alone, and saying whether it came to the same bits."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .case.model import Case
+from .errors import CaseError
+from .output import RunDirectory
+from .provenance import attributes
+from .resume import differences
+
+if TYPE_CHECKING:
+    import xarray
+
+TOLD = ("versions", "plugins", "machine")
+"""Attributes of a history that say with what, and where, it was made."""
+
+
+def history_of(directory: Path) -> xarray.Dataset:
+    """The history that a run directory holds.
+
+    Raises:
+        CaseError: there is none, or it cannot be read.
+    """
+    import xarray
+
+    file = RunDirectory(directory).history
+    try:
+        with xarray.open_dataset(file) as history:
+            return history.load()
+    except (OSError, ValueError) as error:
+        raise CaseError(f"'{file}' cannot be read as the history of a run: {error}") from None
+
+
+def made_differently(history: xarray.Dataset, case: Case, threads: int) -> list[str]:
+    """What is not as it was when a history was made: versions, plug-ins, machine; threads change no bit."""
+    now, found = attributes(case, threads), []
+    for name in TOLD:
+        before = json.loads(history.attrs.get(name, "null"))
+        found += differences(before, json.loads(now[name]), name)
+    return [sentence for sentence in found if not sentence.startswith("machine.threads")]
+
+
+def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | None:
+    """Where two histories of a case part, to the bit; None if they do not.
+
+    Of a run that did not finish, the rows that both have are compared, but for the last: it is of the step
+    at which the run was stopped.
+    """
+    finished = all(h.attrs.get("stopped_because") == "finished" for h in (before, after))
+    rows = min(before.sizes["time"], after.sizes["time"]) - (0 if finished else 1)
+    if finished and before.sizes["time"] != after.sizes["time"]:
+        return f"there were {before.sizes['time']} rows and are {after.sizes['time']}"
+    if missing := set(before.data_vars) ^ set(after.data_vars):
+        return f"only one of the two has {', '.join(sorted(map(str, missing)))}"
+    for name in ("time", *before.data_vars):
+        a, b = (h[name].isel(time=slice(rows)).values for h in (before, after))
+        a, b = a.reshape(rows, -1), b.reshape(rows, -1)
+        width = min(a.shape[1], b.shape[1])  # particles that came later in the longer one
+        apart = ~((a[:, :width] == b[:, :width]) | (np.isnan(a[:, :width]) & np.isnan(b[:, :width])))
+        if apart.any():
+            row = int(apart.any(axis=1).argmax())
+            column = int(apart[row].argmax())
+            time = float(before.time[row])
+            return f"{name} at t = {time:.6g} s was {a[row, column]!r} and is {b[row, column]!r}"
+    return None

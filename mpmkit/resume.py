@@ -1,0 +1,84 @@
+"""Going on with a run from its last checkpoint, if it is the same run: same case, same versions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+
+from . import __version__
+from .case import load_case
+from .case.model import Case
+from .errors import CaseError
+from .output import RunDirectory
+from .output.checkpoints import Checkpoints
+from .provenance import plugins_used, resolved
+
+
+def identity(case: Case) -> dict[str, Any]:
+    """What a run's bits depend on, beside the machine: the case, and the versions of what runs it."""
+    return {
+        "mpmkit": __version__,
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+        "case": json.loads(json.dumps(resolved(case))),
+        "plugins": {f"{entry['kind']} '{entry['name']}'": _source(entry) for entry in plugins_used(case)},
+    }
+
+
+def _source(plugin: dict[str, str]) -> str:
+    return f"{plugin.get('distribution', '?')} {plugin.get('version', '?')}"
+
+
+def differences(before: Any, now: Any, path: str = "") -> list[str]:
+    """Where two trees of JSON differ, each as ``path was A and is B``."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        keys = [*before, *(key for key in now if key not in before)]
+        pairs = [(f"{path}.{key}" if path else key, before.get(key), now.get(key)) for key in keys]
+    elif isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        pairs = [(f"{path}.{i}", a, b) for i, (a, b) in enumerate(zip(before, now, strict=True))]
+    else:
+        same = before == now
+        return [] if same else [f"{path} was {json.dumps(before)} and is {json.dumps(now)}"]
+    return [sentence for name, a, b in pairs for sentence in differences(a, b, name)]
+
+
+def case_of(directory: Path) -> Case:
+    """The case that a run directory holds.
+
+    Raises:
+        CaseError: it holds none.
+    """
+    file = RunDirectory(directory).case
+    if not file.is_file():
+        raise CaseError(f"'{directory}' is not the directory of a run: it has no case.json")
+    return load_case(file)
+
+
+def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and words of the last whole checkpoint of a run.
+
+    Raises:
+        CaseError: there is none, or it is of another case or of other versions; says what differs.
+    """
+    files = RunDirectory(directory)
+    checkpoints = Checkpoints(files.checkpoints)
+    if not checkpoints.paths() and _has_finished(files):
+        raise CaseError(f"the run in '{directory}' has finished: there is nothing to go on with")
+    arrays, words = checkpoints.newest()
+    if found := differences(words["identity"], identity(case)):
+        more = f", and {len(found) - 1} more" if len(found) > 1 else ""
+        raise CaseError(
+            f"the run in '{directory}' cannot go on, since it would be another one: {found[0]}{more}"
+        )
+    return arrays, words
+
+
+def _has_finished(files: RunDirectory) -> bool:
+    try:
+        return json.loads(files.summary.read_text())["stopped_because"] == "finished"
+    except (OSError, ValueError, KeyError):
+        return False
