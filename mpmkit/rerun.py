@@ -67,5 +67,6 @@ def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | Non
             row = int(apart.any(axis=1).argmax())
             column = int(apart[row].argmax())
             time = float(before.time[row])
-            return f"{name} at t = {time:.6g} s was {a[row, column]!r} and is {b[row, column]!r}"
+            was, now = float(a[row, column]), float(b[row, column])
+            return f"{name} at t = {time:.6g} s was {was!r} and is {now!r}"
     return None

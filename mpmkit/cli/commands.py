@@ -38,12 +38,10 @@ def execute(arguments: Sequence[str] | None) -> int:
         KeyboardInterrupt: on Ctrl-C.
     """
     try:
-        commands(arguments, prog_name="mpmkit", standalone_mode=False)
+        status = commands(arguments, prog_name="mpmkit", standalone_mode=False)
     except MpmkitError as error:
         _tell(str(error))
         return error.exit_status
-    except click.exceptions.Exit as stop:
-        return stop.exit_code
     except click.UsageError as error:
         command = error.ctx.command_path if error.ctx is not None else "mpmkit"
         _tell(f"{error.format_message().rstrip('.')}; see {command} --help")
@@ -56,7 +54,7 @@ def execute(arguments: Sequence[str] | None) -> int:
         _let_go_of_output()
         _tell(f"cannot write to the standard output: {error.strerror}")
         return OutputError.exit_status
-    return 0
+    return status if isinstance(status, int) else 0  # click returns what a command exits with
 
 
 def _of_printing(error: OSError) -> bool:

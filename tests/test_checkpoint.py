@@ -1,0 +1,392 @@
+"""A run that was stopped, however it was, goes on to the bits that it would have come to."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+import mpmkit
+from mpmkit import resume as resume_module
+from mpmkit.case import load_case, parse_case
+from mpmkit.errors import CaseError
+from mpmkit.output.checkpoints import MAGIC, Checkpoints
+from mpmkit.runner import resume
+from mpmkit.solver.simulation import Simulation
+from mpmkit.solver.state import restore, state_of
+
+CASES = Path(__file__).parents[1] / "cases"
+COARSE = {
+    "slump": ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}'],
+    "slump_fast": ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}'],
+    "slump_bingham": ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}'],
+    "slump_as_published": ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}'],
+    "slump_quarter": ["grid.cell_size=0.05", 'grid.domain={"x": [0, 0.4], "y": [0, 0.4], "z": [0, 0.35]}'],
+    "slump_quarter_fine": [
+        "grid.cell_size=0.05",
+        'grid.domain={"x": [0, 0.4], "y": [0, 0.4], "z": [0, 0.35]}',
+    ],
+    "slump_ferreira": [
+        "grid.cell_size=0.05",
+        'grid.domain={"x": [-0.35, 0.35], "y": [-0.35, 0.35], "z": [0, 0.35]}',
+    ],
+    "film": [],
+    "two_discs": [],
+    "vibrating_bar": [],
+}
+LAWS = {
+    "newtonian": {"viscosity": 30.0},
+    "bingham": {"yield_stress": 50.0, "plastic_viscosity": 30.0, "regularisation": 10.0},
+    "herschel-bulkley": {
+        "yield_stress": 50.0,
+        "consistency": 30.0,
+        "flow_index": 1.2,
+        "regularisation": 10.0,
+    },
+    "bingham-evp": {"yield_stress": 50.0, "plastic_viscosity": 30.0},
+    "herschel-bulkley-evp": {"yield_stress": 50.0, "consistency": 30.0, "flow_index": 1.2},
+    "neo-hookean": {"youngs_modulus": 1e5, "poisson_ratio": 0.3},
+}
+
+
+def written_and_read(state):
+    """A state as a file would give it back."""
+    content = io.BytesIO()
+    np.savez(content, allow_pickle=False, **state)
+    with np.load(io.BytesIO(content.getvalue()), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def assert_same(a: Simulation, b: Simulation):
+    left, right = state_of(a), state_of(b)
+    assert left.keys() == right.keys()
+    for name, array in left.items():
+        np.testing.assert_array_equal(array, right[name], err_msg=name)
+        assert array.dtype == right[name].dtype, name
+
+
+def stopped_at_half(case, steps=45):
+    """Two simulations after as many steps, one of them stopped in between, neither at a control step."""
+    whole = Simulation(case)
+    for _ in range(steps // 2):
+        whole.advance()
+    again = Simulation(case)
+    restore(again, written_and_read(state_of(whole)))
+    assert_same(again, whole)
+    for _ in range(steps - steps // 2):
+        whole.advance()
+        again.advance()
+    return whole, again
+
+
+SCHEMES = [(order, shape) for order in ("usl", "usf", "musl") for shape in ("cpgimp", "linear")]
+
+
+@pytest.mark.parametrize(("order", "shape"), SCHEMES)
+@pytest.mark.parametrize("name", COARSE)
+def test_every_case_with_every_order_and_shape(name, order, shape):
+    schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
+    case = load_case(CASES / f"{name}.json", [*COARSE[name], *schemes])
+    assert_same(*stopped_at_half(case))
+
+
+@pytest.mark.parametrize(("order", "shape"), SCHEMES)
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("name", ["slump_fast", "slump_quarter"])
+def test_every_law_with_every_order_and_shape(name, law, order, shape):
+    data = json.loads((CASES / f"{name}.json").read_text())
+    data["bodies"][0]["material"] = {"law": law, "density": 2000, **LAWS[law]}
+    if law != "neo-hookean":
+        data["bodies"][0]["material"]["sound_speed"] = {"mach": 0.1}
+    schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
+    assert_same(*stopped_at_half(parse_case(data, [*COARSE[name], *schemes])))
+
+
+def test_the_shipped_cases_are_all_there():
+    assert {path.stem for path in CASES.glob("*.json")} == set(COARSE)
+
+
+WALL = {"kind": "friction", "coefficient": 0.3}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [f'grid.faces={{"z_min": {json.dumps(WALL)}, "r_max": "stick"}}'],
+        ['scheme.shape={"name": "cpgimp", "domain": "stretch"}'],
+        ['scheme.shape={"name": "cpgimp", "domain": "volume"}'],
+        ["scheme.velocity=flip", "scheme.volumetric=own"],
+        ["scheme.velocity=blend"],
+    ],
+    ids=lambda changes: changes[0],
+)
+def test_what_walls_domains_and_velocities_remember(changes):
+    """As it falls, with particles that are split: 300 steps, so that the window moves on."""
+    case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], *changes])
+    whole, again = stopped_at_half(case, 300)
+    assert len(whole.particles) > 56 or "stick" in changes[0]
+    assert_same(whole, again)
+
+
+# --- In a run directory
+
+
+def run(tmp_path, name="run", **settings):
+    case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], "until=0.3", "output.report=false"])
+    return case, tmp_path / name, settings
+
+
+def stop_after(monkeypatch, seconds):
+    """An interrupt that comes once the simulation has come to a time."""
+    advance = Simulation.advance
+
+    def advanced(self, *arguments):
+        done = advance(self, *arguments)
+        if self.time > seconds:
+            monkeypatch.setattr(Simulation, "advance", advance)
+            os.kill(os.getpid(), signal.SIGINT)
+        return done
+
+    monkeypatch.setattr(Simulation, "advance", advanced)
+
+
+@pytest.fixture
+def stopped(tmp_path, monkeypatch):
+    """The directory of a run that was interrupted at 0.1 of 0.3 s, beside one that was not."""
+    case, directory, _ = run(tmp_path)
+    monkeypatch.setattr(signal, "getsignal", lambda number: signal.default_int_handler)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    mpmkit.run(case, tmp_path / "whole")
+    stop_after(monkeypatch, 0.1)
+    with pytest.raises(KeyboardInterrupt, match=r"go on with: mpmkit run --resume"):
+        mpmkit.run(case, directory)
+    yield directory
+    signal.signal(signal.SIGINT, before)
+
+
+def same_histories(a: Path, b: Path):
+    with xarray.open_dataset(a / "history.nc") as one, xarray.open_dataset(b / "history.nc") as other:
+        xarray.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+    frames = sorted(path.name for path in (a / "frames").iterdir())
+    assert frames == sorted(path.name for path in (b / "frames").iterdir())
+    for name in frames:
+        assert (a / "frames" / name).read_bytes() == (b / "frames" / name).read_bytes(), name
+
+
+def test_an_interrupted_run_goes_on_and_leaves_what_an_uninterrupted_one_does(stopped):
+    assert json.loads((stopped / "summary.json").read_text())["stopped_because"] == "interrupted"
+    history = resume(stopped)
+    assert history.attrs["stopped_because"] == "finished"
+    same_histories(stopped, stopped.with_name("whole"))
+    assert not (stopped / "checkpoints").exists()
+    assert "goes on after step" in (stopped / "run.log").read_text()
+    with pytest.raises(CaseError, match="has finished: there is nothing to go on with"):
+        resume(stopped)
+
+
+def test_particles_that_came_on_the_way_are_in_the_history(tmp_path, monkeypatch):
+    """Rows of ever more particles survive the checkpoint."""
+    case = load_case(
+        CASES / "slump_fast.json",
+        [*COARSE["slump_fast"], "until=0.4", "output.report=false", 'output.particle_history=["velocity"]'],
+    )
+    monkeypatch.setattr(signal, "getsignal", lambda number: signal.default_int_handler)
+    mpmkit.run(case, tmp_path / "whole")
+    stop_after(monkeypatch, 0.3)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            mpmkit.run(case, tmp_path / "run")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    resume(tmp_path / "run")
+    same_histories(tmp_path / "run", tmp_path / "whole")
+
+
+def damaged(directory: Path, how: str):
+    """Add a newer checkpoint that is not whole."""
+    (last,) = Checkpoints(directory / "checkpoints").paths()
+    content = last.read_bytes()
+    if how == "cut off":
+        content = content[: len(content) // 2]
+    elif how == "one bit":
+        content = content[:-100] + bytes([content[-100] ^ 1]) + content[-99:]
+    elif how == "empty":
+        content = b""
+    newer = last.with_name("step_999999999999.checkpoint")
+    newer.write_bytes(content)
+    return last, newer
+
+
+@pytest.mark.parametrize("how", ["cut off", "one bit", "empty"])
+def test_a_damaged_checkpoint_is_noticed_and_the_one_before_is_used(stopped, how, caplog):
+    damaged(stopped, how)
+    resume(stopped)
+    assert "the one before it is used" in caplog.text
+    same_histories(stopped, stopped.with_name("whole"))
+
+
+def test_where_all_are_damaged_the_run_is_refused_and_left_alone(stopped):
+    last, _ = damaged(stopped, "empty")
+    last.write_bytes(last.read_bytes()[:1000])
+    before = {path: path.read_bytes() for path in stopped.rglob("*") if path.is_file()}
+    with pytest.raises(CaseError, match="has no checkpoint to go on from"):
+        resume(stopped)
+    assert {path: path.read_bytes() for path in stopped.rglob("*") if path.is_file()} == before
+
+
+def test_nothing_in_a_checkpoint_is_unpickled(stopped, tmp_path):
+    """An array of objects would be: whoever made the file, checksum and all, does not get to run code."""
+
+    class Evil:
+        def __reduce__(self):
+            return os.mkdir, (str(tmp_path / "executed"),)
+
+    content = io.BytesIO()
+    np.savez(content, words=np.array([Evil()], dtype=object))
+    body = content.getvalue()
+    head = MAGIC + hashlib.sha256(body).hexdigest().encode() + b"\n"
+    for path in Checkpoints(stopped / "checkpoints").paths():
+        path.write_bytes(head + body)
+    with pytest.raises(CaseError, match="has no checkpoint"):
+        resume(stopped)
+    assert not (tmp_path / "executed").exists()
+
+
+def test_the_last_two_are_kept(tmp_path):
+    checkpoints = Checkpoints(tmp_path / "checkpoints")
+    for step in (1, 10, 100, 1000):
+        checkpoints.write(step, {"x": np.arange(3.0)}, {"step": step})
+    assert [path.name for path in checkpoints.paths()] == [
+        "step_000000001000.checkpoint",
+        "step_000000000100.checkpoint",
+    ]
+    arrays, words = checkpoints.newest()
+    np.testing.assert_array_equal(arrays["x"], [0, 1, 2])
+    assert words == {"step": 1000}
+
+
+# --- Another run is refused, with the difference named
+
+
+def test_another_case_in_the_directory(stopped):
+    data = json.loads((stopped / "case.json").read_text())
+    data["bodies"][0]["material"]["yield_stress"] = 200.0
+    (stopped / "case.json").write_text(json.dumps(data))
+    with pytest.raises(CaseError, match=r"case\.bodies\.0\.material\.yield_stress was 188\.91 and is 200"):
+        resume(stopped)
+
+
+def test_another_case_on_the_command_line(stopped):
+    other = load_case(stopped / "case.json", ["scheme.order=usf"])
+    with pytest.raises(CaseError, match=r'scheme\.order\.name was "usl" and is "usf"'):
+        resume(stopped, case=other)
+    assert resume(stopped, case=load_case(stopped / "case.json")).attrs["stopped_because"] == "finished"
+
+
+@pytest.mark.parametrize("what", ["mpmkit", "numba", "plugins"])
+def test_other_versions(stopped, what, monkeypatch):
+    identity = resume_module.identity
+
+    def other(case):
+        found = identity(case)
+        if what == "plugins":
+            found["plugins"]["order 'usl'"] = "mpmkit 9.9"
+        else:
+            found[what] = "9.9"
+        return found
+
+    monkeypatch.setattr(resume_module, "identity", other)
+    named = "plugins\\.order 'usl'" if what == "plugins" else what
+    with pytest.raises(CaseError, match=rf'{named} was ".*" and is ".*9\.9"'):
+        resume(stopped)
+
+
+def test_a_directory_that_is_none_of_a_run(tmp_path):
+    with pytest.raises(CaseError, match=r"is not the directory of a run: it has no case\.json"):
+        resume(tmp_path)
+
+
+# --- kill -9
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "mpmkit", *map(str, arguments)]
+
+
+def kill_again_and_again(tmp_path, times, seed):
+    """The run of ``slump_fast`` on fine cells, killed at random and taken up, until it is through."""
+    chosen = random.Random(seed)
+    changes = ["--set", "grid.cell_size=0.01", "--set", "grid.domain.z=[0,0.31]"]
+    case = [CASES / "slump_fast.json", *changes, "--set", "output.report=false", "--quiet", "--threads", 1]
+    subprocess.run(command("run", *case, "--out", tmp_path / "whole"), check=True, timeout=300)
+    directory, killed = tmp_path / "run", 0
+    for _ in range(10 * times):
+        more = ["--resume", directory, "--quiet"] if (directory / "checkpoints").exists() else None
+        if more is None:
+            shutil.rmtree(directory, ignore_errors=True)
+            more = [*case, "--out", directory]
+        process = subprocess.Popen(command("run", *more, "--checkpoint-every", "0.05s"))
+        try:
+            process.wait(1.5 + chosen.uniform(0.0, 1.5) if killed < times else 300)
+        except subprocess.TimeoutExpired:
+            process.kill()  # SIGKILL: it hears nothing of it
+            process.wait()
+            killed += 1
+            if (directory / "history.nc").exists():
+                with xarray.open_dataset(directory / "history.nc") as history:
+                    assert np.isfinite(history.spread_diameter.values).all()
+            continue
+        assert process.returncode == 0
+        if killed >= times or not (directory / "checkpoints").exists():
+            break
+    same_histories(directory, tmp_path / "whole")
+    return killed
+
+
+def test_killed_and_taken_up(tmp_path):
+    assert kill_again_and_again(tmp_path, times=2, seed=1) >= 1
+
+
+@pytest.mark.slow
+def test_killed_and_taken_up_twenty_times(tmp_path):
+    total = 0
+    for seed in range(20):
+        total += kill_again_and_again(tmp_path / str(seed), times=20 - total, seed=seed)
+        if total >= 20:
+            break
+    assert total >= 20
+
+
+# --- rerun
+
+
+def test_a_run_is_repeated_from_its_directory(tmp_path):
+    case, directory, _ = run(tmp_path)
+    mpmkit.run(case, directory)
+    done = subprocess.run(command("rerun", directory, "--quiet"), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("the same bits")
+    same_histories(directory, tmp_path / "run-rerun")
+
+
+def test_a_rerun_says_what_differs(tmp_path):
+    case, directory, _ = run(tmp_path)
+    mpmkit.run(case, directory)
+    data = json.loads((directory / "case.json").read_text())
+    data["bodies"][0]["material"]["consistency"] *= 1 + 1e-12
+    (directory / "case.json").write_text(json.dumps(data))
+    done = subprocess.run(command("rerun", directory, "--quiet"), capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "not the same: " in done.stdout
