@@ -168,7 +168,9 @@ def test_an_interrupted_run_keeps_its_history(case, tmp_path, sent):
     assert process.returncode == 130, said
     last = said.splitlines()[-1]
     assert last.startswith("mpmkit: interrupted at t = ")
-    assert last.endswith("; the results up to then are in 'runs/tiny'; go on with: mpmkit run --resume runs/tiny")
+    assert last.endswith(
+        "; the results up to then are in 'runs/tiny'; go on with: mpmkit run --resume runs/tiny"
+    )
     assert "Traceback" not in said
     assert json.loads((directory / "summary.json").read_text())["stopped_because"] == "interrupted"
     with xarray.open_dataset(directory / "history.nc") as history:
