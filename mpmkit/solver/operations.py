@@ -68,10 +68,13 @@ class SceneOperations:
 
     def _evaluate_shapes(self) -> None:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
-        shape.fill(p.position, p.half_size, dx, self.base, self.weight, self.gradient)
+        tables = p.position, p.half_size, self.base, self.weight, self.gradient
         if self.radial:
-            base, weight, gradient = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
-            shape.fill_radial(p.position[:, 0], p.half_size[:, 0], dx, base, weight, gradient, self.hoop)
+            radius, half_size, base, weight, gradient = (table[:, 0] for table in tables)
+            shape.fill_radial(radius, half_size, dx, base, weight, gradient, self.hoop)
+            tables = tuple(table[:, 1:] for table in tables)  # type: ignore[assignment]
+        position, half_size, base, weight, gradient = tables
+        shape.fill(position, half_size, dx, base, weight, gradient)
 
     def start(self) -> None:
         """Before the first step: read the affine part of an initial velocity off the grid."""

@@ -66,17 +66,17 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index, ite
     for c in prange(chunk_count(n)):
         given = trial[c * CHUNK : min(n, (c + 1) * CHUNK)]
         found = stress[c * CHUNK : min(n, (c + 1) * CHUNK)]
+        target = np.empty(len(given))
         for p in range(len(given)):
-            target = log(max(given[p] - yield_stress, SMALLEST))
-            found[p] = min((target - ln_k) / flow_index, target - ln_g)
+            target[p] = log(max(given[p] - yield_stress, SMALLEST))
+            found[p] = min((target[p] - ln_k) / flow_index, target[p] - ln_g)
         for _ in range(iterations):
             for p in range(len(given)):
-                target = log(max(given[p] - yield_stress, SMALLEST))
                 a, b = fused(flow_index, found[p], ln_k), found[p] + ln_g
                 less = exp(-abs(a - b))  # the smaller term over the larger one
                 value = max(a, b) + log(1.0 + less)
                 slope = (flow_index + less if a > b else fused(flow_index, less, 1.0)) / (1.0 + less)
-                found[p] -= (value - target) / slope
+                found[p] -= (value - target[p]) / slope
         for p in range(len(given)):
             excess = given[p] - yield_stress
             # Never more than without flow; and what is no number stays none.
