@@ -22,6 +22,14 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
+SHIPPED = sorted((Path(__file__).parents[1] / "cases" / "studies").glob("*.json"))
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_studies_load(path):
+    assert len(members_of(load_study(path))) > 1
+
+
 ORDERS = {"scheme.order": ["usl", "usf"]}
 BAD = {
     "no JSON": ('{"case": 1,', "s.json: the study file is not valid JSON: "),
