@@ -1,4 +1,4 @@
-"""Disks that are full or read-only, files that vanish: status 4, one sentence, and all that is there is whole."""
+"""Disks that are full or read-only, files that vanish: status 4, one sentence, nothing half-written left."""
 
 from __future__ import annotations
 
