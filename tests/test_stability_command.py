@@ -95,6 +95,20 @@ def test_a_trace_looks_at_the_run_at_equal_times():
     assert found.stopped_by is None
 
 
+def test_a_trace_goes_on_beyond_periodic_faces():
+    faces = {"x_min": "periodic", "x_max": "periodic", "z_min": "slip", "z_max": "open"}
+    grid = COLUMN["grid"] | {"domain": {"x": [0, 0.5], "z": [0, 1]}, "faces": faces}
+    body = COLUMN["bodies"][0] | {"velocity": [3.0, 0.0]}
+    found = trace(parse_case(COLUMN | {"grid": grid, "bodies": [body], "gravity": [0, 0]}), 0.3)
+    gone = found.position[-1] - found.position[0]
+    assert gone == pytest.approx(np.tile([0.75, 0.0], (100, 1)), abs=1e-9)  # one and a half periods
+
+
+def test_no_more_is_tried_than_was_asked_for():
+    found = critical_fraction(parse_case(COLUMN | {"until": 0.02}), largest=0.3)
+    assert (found.fraction, found.unstable, found.broken) == (0.3, math.inf, "")
+
+
 def test_usl_bears_less_than_musl_and_each_what_it_says():
     """Inside a body USL bears 0.756 of dx/c and MUSL √2 of it and more; surfaces take some of it."""
     found = {

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..errors import GuardStop
+from ..solver.grid import Grid
 from ..solver.simulation import Simulation
 
 ROWS = 40
@@ -25,7 +26,7 @@ class Trace:
     momentum: np.ndarray
     """(rows, dim) kg m/s"""
     position: np.ndarray
-    """(rows, n, dim) by the particles' numbers, m"""
+    """(rows, n, dim) by the particles' numbers, m; along a periodic axis going on beyond the faces"""
     mass: np.ndarray
     stopped_by: str | None
 
@@ -45,7 +46,21 @@ def trace(case: Case, fraction: float) -> Trace:
             stopped_by = stop.guard
     p = simulation.particles
     time, energy, kinetic, momentum, position = (np.array(column) for column in zip(*rows, strict=True))
+    position = _unwrapped(position, simulation.grid)
     return Trace(time, energy, kinetic, momentum, position, p.mass[np.argsort(p.number)], stopped_by)
+
+
+def _unwrapped(position: np.ndarray, grid: Grid) -> np.ndarray:
+    """Where particles would be had they not come in again at the other of two periodic faces.
+
+    From row to row none may go further than half the period.
+    """
+    with np.errstate(all="ignore"):
+        steps = np.diff(position, axis=0)
+        for axis in np.flatnonzero(grid.periodic):
+            period = grid.extent[axis]
+            steps[..., axis] -= period * np.rint(steps[..., axis] / period)
+        return np.concatenate([position[:1], position[:1] + np.cumsum(steps, axis=0)])
 
 
 def _row(simulation: Simulation) -> tuple:
