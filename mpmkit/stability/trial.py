@@ -20,13 +20,15 @@ class Trace:
     """What a trial did, at ``ROWS`` times from the start on; shorter where a guard stopped it."""
 
     time: np.ndarray
+    """of the steps that end next to equal parts of the run: a step is never cut, since that may steady it"""
     energy: np.ndarray
     """(rows,) kinetic, potential, elastic and compressive energy together, J"""
     kinetic: np.ndarray
     momentum: np.ndarray
     """(rows, dim) kg m/s"""
     position: np.ndarray
-    """(rows, n, dim) by the particles' numbers, m; along a periodic axis going on beyond the faces"""
+    """(rows, n, dim) by the particles' numbers, m, at equal parts of the run, by the velocity of the step
+    next to them; along a periodic axis going on beyond the faces"""
     mass: np.ndarray
     stopped_by: str | None
 
@@ -38,9 +40,9 @@ def trace(case: Case, fraction: float) -> Trace:
     with np.errstate(all="ignore"):
         try:
             for time in np.linspace(0.0, case.until, ROWS):
-                while simulation.time < time * (1 - 1e-12):
-                    simulation.advance(time - simulation.time)
-                rows.append(_row(simulation))
+                while simulation.time + simulation.time_step / 2 <= time:
+                    simulation.advance()
+                rows.append(_row(simulation, time - simulation.time))
             simulation.check()
         except GuardStop as stop:
             stopped_by = stop.guard
@@ -63,7 +65,7 @@ def _unwrapped(position: np.ndarray, grid: Grid) -> np.ndarray:
         return np.concatenate([position[:1], position[:1] + np.cumsum(steps, axis=0)])
 
 
-def _row(simulation: Simulation) -> tuple:
+def _row(simulation: Simulation, later: float) -> tuple:
     p, found = simulation.particles, simulation.measures(simulation.particles)
     energies = ("kinetic_energy", "potential_energy", "strain_energy", "compressive_energy")
     return (
@@ -71,5 +73,5 @@ def _row(simulation: Simulation) -> tuple:
         sum(float(found[name]) for name in energies),
         float(found["kinetic_energy"]),
         found["momentum"],
-        p.position[np.argsort(p.number)].copy(),
+        (p.position + later * p.velocity)[np.argsort(p.number)],
     )
