@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -49,49 +50,59 @@ def make(name: str, measure: Callable[[], xr.Dataset], draw: Callable[[xr.Datase
         draw(data.load()).savefig(path, pil_kwargs={"optimize": True})
 
 
-def amplification(simulation: mpmkit.Simulation, dt: float) -> np.ndarray:
-    """The matrix by which one step multiplies velocities, stretches and affine velocities along x.
+def amplification(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> np.ndarray:
+    """The matrix by which one step multiplies what moves and strains a body at rest, along the first axes.
 
-    Of an elastic bar at rest along x: every one of them is given a little, by itself, and a step is made.
+    Velocities, affine velocities, and stretches or, of a fluid, volume ratios: every one of them is given a
+    little, by itself, and a step is made.
     """
-    p, ops, law = simulation.particles, simulation.operations, simulation.particles.groups[0].law
-    n, kinds = len(p), 3 if simulation.case.scheme.velocity.affine else 2
+    p, ops, group = simulation.particles, simulation.operations, simulation.particles.groups[0]
     ops.begin()  # the first sorts the particles
     rest = {name: array.copy() for name, array in p.arrays().items()}
+    tensor = list(np.ndindex(axes, axes))
+    fluid = group.law.uses_equation_of_state
+    fields: list[tuple[str, tuple]] = [("velocity", (axis,)) for axis in range(axes)]
+    fields += [("volume_ratio", ())] if fluid else [("deformation_gradient", at) for at in tensor]
+    fields += [("affine", at) for at in tensor] if simulation.case.scheme.velocity.affine else []
     columns = []
-    for kind, particle in np.ndindex(kinds, n):
+    for (field, at), particle in itertools.product(fields, range(len(p))):
         for name, array in rest.items():
             getattr(p, name)[...] = array
-        if kind == 0:
-            p.velocity[particle, 0] = STRAIN
-        elif kind == 1:
-            p.deformation_gradient[particle, 0, 0] = p.volume_ratio[particle] = 1 + STRAIN
-            law.update_stress(p.motion(p.groups[0]), p.groups[0].state, dt, p.stress)
+        getattr(p, field)[(particle, *at)] += STRAIN
+        if fluid:
+            p.volume[:] = p.volume_ratio * p.initial_volume
+            p.pressure[:] = group.pressure(p.volume_ratio)
         else:
-            p.affine[particle, 0, 0] = STRAIN
+            p.volume_ratio[:] = np.linalg.det(p.deformation_gradient)
+            group.law.update_stress(p.motion(group), group.state, dt, p.stress)
         ops.begin()
         ops.step(dt)
-        found = np.concatenate([p.velocity[:, 0], p.deformation_gradient[:, 0, 0] - 1])
-        affine = p.affine[:, 0, 0] if kinds == 3 else []
-        columns.append(np.concatenate([found, affine]) / STRAIN)
+        found = [(getattr(p, name) - rest[name])[(slice(None), *index)] for name, index in fields]
+        columns.append(np.concatenate(found) / STRAIN)
     for name, array in rest.items():
         getattr(p, name)[...] = array
     return np.array(columns).T
 
 
-def growth(simulation: mpmkit.Simulation, dt: float) -> float:
+def growth(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> float:
     """By how much one step can multiply a disturbance: the largest eigenvalue."""
-    return float(np.abs(np.linalg.eigvals(amplification(simulation, dt))).max())
+    return float(np.abs(np.linalg.eigvals(amplification(simulation, dt, axes))).max())
 
 
-def largest_step(simulation: mpmkit.Simulation, low: float, high: float, tried: int = 120) -> float:
+def largest_step(
+    simulation: mpmkit.Simulation, low: float, high: float, tried: int = 120, axes: int = 1
+) -> float:
     """The first step, going up, that lets something grow; by bisection between those tried."""
+
+    def grows(dt: float) -> bool:
+        return growth(simulation, dt, axes) > 1 + 1e-3
+
     steps = np.geomspace(low, high, tried)
-    first = next((i for i, dt in enumerate(steps) if growth(simulation, dt) > 1 + 1e-3), None)
+    first = next((i for i, dt in enumerate(steps) if grows(dt)), None)
     if not first:
         return low if first == 0 else high
     below, above = steps[first - 1 : first + 1]
     for _ in range(6):
         middle = np.sqrt(below * above)
-        below, above = (below, middle) if growth(simulation, middle) > 1 + 1e-3 else (middle, above)
+        below, above = (below, middle) if grows(middle) else (middle, above)
     return float(below)

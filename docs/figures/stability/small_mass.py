@@ -2,7 +2,7 @@
 
     python docs/figures/stability/small_mass.py [--draw]
 
-Takes half a minute; with --draw, from docs/data/stability_small_mass.nc, a second.
+Takes two minutes; with --draw, from docs/data/stability_small_mass.nc, a second.
 """
 
 from __future__ import annotations
@@ -15,14 +15,42 @@ import xarray as xr
 from common_a import COLOURS, ORDERS, growth, largest_step, make, sheet, title
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from stability import free_bar  # of tests/validation
+from stability import FLIP, free_bar  # of tests/validation
+
+import mpmkit
 
 RUBBER = {"law": "neo-hookean", "density": 1.0, "youngs_modulus": 1.0, "poisson_ratio": 0.0}
 SHAPES = {"linear": ("o", "none"), "cpgimp": ("s", "full")}
 REACH = np.geomspace(0.2, 1e-6, 12)
 PER_CELL = [1, 2, 3, 4, 6, 8, 12, 16]
+CORNER = 6
+"""Most particles an axis of a block: the matrix has twelve times their square of rows."""
 TAKEN = 0.4
 """Of dx/c: what USL takes at most."""
+
+
+def corner(n: int) -> mpmkit.Simulation:
+    """A block of an inviscid fluid, USL and own pressure, that reaches a little over nodes along x and z."""
+    simulation = mpmkit.Simulation(
+        mpmkit.parse_case(
+            {
+                "space": "plane-strain",
+                "until": 1.0,
+                "gravity": [0, 0],
+                "grid": {"cell_size": 1.0, "domain": {"x": [0, 8], "z": [0, 8]}},
+                "bodies": [
+                    {
+                        "shape": {"kind": "box", "lower": [2, 2], "upper": [4, 4]},
+                        "material": {"law": "newtonian", "density": 1, "viscosity": 0, "sound_speed": 1},
+                        "particles_per_cell": n * n,
+                    }
+                ],
+                "scheme": FLIP | {"order": "usl"},
+            }
+        )
+    )
+    simulation.particles.position += 1e-3 / n
+    return simulation
 
 
 def measure() -> xr.Dataset:
@@ -42,6 +70,8 @@ def measure() -> xr.Dataset:
             largest_step(free_bar(RUBBER, "cpgimp", part / n, n, order=order), 0.05, 3.0) for part in parts
         )
         print("thin", order, n, f"{thin[j, k]:.4g}")
+    corners = [largest_step(corner(n), 0.2, 1.0, 40, axes=2) if n <= CORNER else np.nan for n in PER_CELL]
+    print("corner", np.round(corners, 4))
     about = {"units": "1", "long_name": "largest stable step over dx/c"}
     return xr.Dataset(
         {
@@ -52,6 +82,7 @@ def measure() -> xr.Dataset:
                 {"units": "1", "long_name": f"largest eigenvalue of a step of {TAKEN} dx/c"},
             ),
             "by_width": (("order", "per_cell"), thin, about | {"description": "cpGIMP, the worst reach"}),
+            "corner": ("per_cell", corners, about | {"description": "USL, corner of a plane fluid block"}),
         },
         {
             "shape": list(SHAPES),
@@ -96,6 +127,7 @@ def draw_width(axes: Axes, data: xr.Dataset) -> None:
             markersize=7 - 2 * i,
             label=order.upper(),
         )
+    axes.plot(w, data.corner, "D", color=COLOURS["usl"], fillstyle="none", label="USL, corner of a fluid")
     line = np.geomspace(1 / 16, 1, 50)
     axes.plot(line, np.sqrt(line), color="black", linewidth=0.9, linestyle="--", label="√w")
     axes.axhline(TAKEN, color="black", linewidth=0.9, linestyle=":", label="what USL takes at most")
