@@ -88,11 +88,36 @@ def test_a_fraction_is_taken_whatever_the_schemes_bear():
     assert tried.time_step == pytest.approx(0.9 * kept.limits.acoustic)
 
 
-def test_a_trace_looks_at_the_run_at_equal_times():
-    found = trace(parse_case(COLUMN), 0.3)
-    assert np.allclose(np.diff(found.time), 0.25 / (len(found.time) - 1))
+def test_a_trace_looks_at_the_run_at_equal_times_and_cuts_no_step():
+    case = parse_case(COLUMN)
+    found, simulation = trace(case, 0.3), Simulation(case, fraction=0.3)
+    equal = np.linspace(0, 0.25, len(found.time))
+    assert np.abs(found.time - equal).max() <= simulation.time_step / 2
+    steps = found.time / simulation.time_step
+    assert steps == pytest.approx(np.rint(steps), abs=1e-6)
     assert found.position.shape == (len(found.time), 100, 2)
     assert found.stopped_by is None
+
+
+def test_positions_of_a_trace_are_those_of_equal_times():
+    body = COLUMN["bodies"][0] | {"velocity": [1.0, 2.0]}
+    found = trace(parse_case(FREE | {"bodies": [body]}), 0.7)
+    gone = found.position[-1] - found.position[0]
+    assert gone == pytest.approx(np.tile([0.05, 0.1], (100, 1)), abs=1e-9)
+
+
+def test_a_trace_goes_on_beyond_periodic_faces():
+    faces = {"x_min": "periodic", "x_max": "periodic", "z_min": "slip", "z_max": "open"}
+    grid = COLUMN["grid"] | {"domain": {"x": [0, 0.5], "z": [0, 1]}, "faces": faces}
+    body = COLUMN["bodies"][0] | {"velocity": [3.0, 0.0]}
+    found = trace(parse_case(COLUMN | {"grid": grid, "bodies": [body], "gravity": [0, 0]}), 0.3)
+    gone = found.position[-1] - found.position[0]
+    assert gone == pytest.approx(np.tile([0.75, 0.0], (100, 1)), abs=1e-9)  # one and a half periods
+
+
+def test_no_more_is_tried_than_was_asked_for():
+    found = critical_fraction(parse_case(COLUMN), largest=0.3)
+    assert (found.fraction, found.unstable, found.broken) == (0.3, math.inf, "")
 
 
 def test_usl_bears_less_than_musl_and_each_what_it_says():

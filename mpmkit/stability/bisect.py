@@ -15,7 +15,7 @@ from .trial import trace
 FINE = 0.05
 """Fraction of the fine solution, which is also the smallest that is tried."""
 LARGEST = 2.0
-"""Largest fraction that is tried: beyond it no explicit scheme is expected to be of use."""
+"""Largest fraction that is tried unless told: beyond it no explicit scheme is expected to be of use."""
 CLOSE = 1.06
 """Ratio of the bracket's ends at which the search is over."""
 
@@ -36,8 +36,8 @@ class Critical:
     """fraction that the schemes say they bear"""
 
 
-def critical_fraction(case: Case, criteria: Criteria | None = None) -> Critical:
-    """Bisect the time step of a case between ``FINE`` and ``LARGEST`` of its limit.
+def critical_fraction(case: Case, criteria: Criteria | None = None, largest: float = LARGEST) -> Critical:
+    """Bisect the time step of a case between ``FINE`` and ``largest`` of its limit.
 
     Raises:
         CaseError: the case cannot be run.
@@ -50,7 +50,7 @@ def critical_fraction(case: Case, criteria: Criteria | None = None) -> Critical:
     if fine.stopped_by is not None:
         return Critical(0.0, FINE, "guard", limit, declared)
     low, high, broken = FINE, math.inf, ""
-    tried = LARGEST
+    tried = largest
     while high / low > CLOSE:
         try:
             found = criteria.broken(case, trace(case, tried), fine)
@@ -58,9 +58,9 @@ def critical_fraction(case: Case, criteria: Criteria | None = None) -> Critical:
             found = "guard"
         if found is None:
             low = tried
-            if tried == LARGEST:
+            if tried == largest:
                 break
         else:
             high, broken = tried, found
-        tried = math.sqrt(low * high) if math.isfinite(high) else LARGEST
+        tried = math.sqrt(low * high) if math.isfinite(high) else largest
     return Critical(low, high, broken, limit, declared)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..errors import GuardStop
+from ..solver.grid import Grid
 from ..solver.simulation import Simulation
 
 ROWS = 40
@@ -19,13 +20,15 @@ class Trace:
     """What a trial did, at ``ROWS`` times from the start on; shorter where a guard stopped it."""
 
     time: np.ndarray
+    """of the steps that end next to equal parts of the run: a step is never cut, since that may steady it"""
     energy: np.ndarray
     """(rows,) kinetic, potential, elastic and compressive energy together, J"""
     kinetic: np.ndarray
     momentum: np.ndarray
     """(rows, dim) kg m/s"""
     position: np.ndarray
-    """(rows, n, dim) by the particles' numbers, m"""
+    """(rows, n, dim) by the particles' numbers, m, at equal parts of the run, by the velocity of the step
+    next to them; along a periodic axis going on beyond the faces"""
     mass: np.ndarray
     stopped_by: str | None
 
@@ -37,18 +40,32 @@ def trace(case: Case, fraction: float) -> Trace:
     with np.errstate(all="ignore"):
         try:
             for time in np.linspace(0.0, case.until, ROWS):
-                while simulation.time < time * (1 - 1e-12):
-                    simulation.advance(time - simulation.time)
-                rows.append(_row(simulation))
+                while simulation.time + simulation.time_step / 2 <= time:
+                    simulation.advance()
+                rows.append(_row(simulation, time - simulation.time))
             simulation.check()
         except GuardStop as stop:
             stopped_by = stop.guard
     p = simulation.particles
     time, energy, kinetic, momentum, position = (np.array(column) for column in zip(*rows, strict=True))
+    position = _unwrapped(position, simulation.grid)
     return Trace(time, energy, kinetic, momentum, position, p.mass[np.argsort(p.number)], stopped_by)
 
 
-def _row(simulation: Simulation) -> tuple:
+def _unwrapped(position: np.ndarray, grid: Grid) -> np.ndarray:
+    """Where particles would be had they not come in again at the other of two periodic faces.
+
+    From row to row none may go further than half the period.
+    """
+    with np.errstate(all="ignore"):
+        steps = np.diff(position, axis=0)
+        for axis in np.flatnonzero(grid.periodic):
+            period = grid.extent[axis]
+            steps[..., axis] -= period * np.rint(steps[..., axis] / period)
+        return np.concatenate([position[:1], position[:1] + np.cumsum(steps, axis=0)])
+
+
+def _row(simulation: Simulation, later: float) -> tuple:
     p, found = simulation.particles, simulation.measures(simulation.particles)
     energies = ("kinetic_energy", "potential_energy", "strain_energy", "compressive_energy")
     return (
@@ -56,5 +73,5 @@ def _row(simulation: Simulation) -> tuple:
         sum(float(found[name]) for name in energies),
         float(found["kinetic_energy"]),
         found["momentum"],
-        p.position[np.argsort(p.number)].copy(),
+        (p.position + later * p.velocity)[np.argsort(p.number)],
     )

@@ -317,6 +317,28 @@ def test_radial_averages_are_weighted_with_r(shape):
 
 
 @averaging
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_node_that_is_barely_touched_has_weight_and_gradient_small_alike(shape, side):
+    """A box of w cells that reaches over a node by e gives it e²/2w and e/w, from the last digit of e on.
+
+    A weight that rounding makes zero, beside a gradient that is not, is force on a node without mass.
+    """
+    dx, w, node = 0.01, 0.5, 1 if side < 0 else 2
+    x = (node - side * w / 2) * dx + side * np.arange(1, 400) * np.spacing(dx)
+    half_size = np.full_like(x, w / 2 * dx)
+    base, weight, gradient = tables(shape, x[:, None], half_size[:, None], dx)
+    over, touched = base[:, 0] == node - 1, 0 if side < 0 else 2
+    weight, slope = weight[over, 0, touched], gradient[over, 0, touched] * dx
+    assert over.sum() > 390
+    np.testing.assert_allclose(weight, w / 2 * slope**2, rtol=1e-6)
+    _, weight, gradient, hoop = radial_tables(shape, x, half_size, dx)
+    weight, slope, hoop = weight[over, touched], gradient[over, touched] * dx, hoop[over, touched] * dx
+    mean_radius = node - side * w / 2  # in cells; with r in the integrals, both numbers are node over it
+    np.testing.assert_allclose(weight, w / 2 * slope**2 * mean_radius / node, rtol=1e-6)
+    np.testing.assert_allclose(hoop * node, weight, rtol=1e-6)
+
+
+@averaging
 def test_a_cell_full_of_contiguous_boxes_is_seen_as_continuous_matter(shape):
     """Contiguous boxes of one density have, at every node inside, the mass of the node's cell."""
     per_cell = 3

@@ -64,7 +64,9 @@ def body_force(X: np.ndarray, t: float, A: float) -> np.ndarray:
 class Bar:
     """The scene, and how far it is from the solution."""
 
-    def __init__(self, cells: int, amplitude: float, fraction: float = 0.1, **scheme) -> None:
+    def __init__(
+        self, cells: int, amplitude: float, fraction: float = 0.1, particles: int = 2, **scheme
+    ) -> None:
         self.amplitude = amplitude
         dx = 1 / cells
         self.simulation = mpmkit.Simulation(
@@ -87,7 +89,7 @@ class Bar:
                                 "youngs_modulus": MODULUS,
                                 "poisson_ratio": POISSON,
                             },
-                            "particles_per_cell": [2, 1],
+                            "particles_per_cell": [particles, 1],
                         }
                     ],
                     "scheme": {"velocity": "flip", "time_step": {"fraction": fraction}, **scheme},

@@ -58,12 +58,14 @@ def _fill(x, l, inverse_cell, base, weight, gradient):
                 a = begin - cell
                 b = a + width
                 # A node that is barely touched divides one small number by another. Both must be small in
-                # the same way, weight ~ gradient²: fractions and midpoints come from the same differences.
-                to_edge, beyond = min(b, 1.0) - a, max(b, 1.0) - 1.0
+                # the same way, weight ~ gradient²: fractions and midpoints come from the same differences,
+                # and how far a midpoint is from the end of its cell is not left to be 1 - ξ, which rounds.
+                end = min(b, 1.0)
+                to_edge, beyond = end - a, max(b, 1.0) - 1.0
                 first, second = to_edge / width, beyond / width  # parts of the box in either cell
                 ξ, η = a + 0.5 * to_edge, 0.5 * beyond  # midpoints of the two parts, each in its cell
                 base[p, d] = cell
-                weight[p, d, 0] = first * (1 - ξ)
+                weight[p, d, 0] = first * ((1 - end) + 0.5 * to_edge)
                 weight[p, d, 1] = first * ξ + second * (1 - η)
                 weight[p, d, 2] = second * η
                 gradient[p, d, 0] = -first * inverse_cell
@@ -75,12 +77,14 @@ def _fill(x, l, inverse_cell, base, weight, gradient):
 def _ring_averages(cell, a, b):
     """∫ r dr, ∫ (1 - ξ) r dr, ∫ ξ r dr and ∫ dr over [a, b] in cell ``cell``, ξ = r - cell, in cells.
 
-    The second is not left to be the difference of the others, which where it is tiny would be rounding.
+    The second is not left to be the difference of the others, nor 1 - ξ that of 1 and the midpoint, which
+    where they are tiny would be rounding.
     """
     mid, length = 0.5 * (a + b), b - a
     spread = length * length / 12
     area = length * (cell + mid)
-    return area, area * (1 - mid) - length * spread, area * mid + length * spread, length
+    left = area * (0.5 * ((1 - a) + (1 - b))) - length * spread
+    return area, left, area * mid + length * spread, length
 
 
 @kernel()
@@ -98,6 +102,7 @@ def _fill_radial(radius, l, cell_size, base, weight, gradient, hoop):
             area = area1 + area2
             per_area = 1 / (area * cell_size)
             mean1, mean2 = 0.5 * (a + min(b, 1.0)), 0.5 * length2
+            short1 = 0.5 * ((1 - a) + (1 - min(b, 1.0)))  # 1 - mean1
             base[p] = cell
             weight[p, 0] = left1 / area
             weight[p, 1] = (right1 + left2) / area
@@ -105,7 +110,7 @@ def _fill_radial(radius, l, cell_size, base, weight, gradient, hoop):
             gradient[p, 0] = -area1 * per_area
             gradient[p, 1] = (area1 - area2) * per_area
             gradient[p, 2] = area2 * per_area
-            hoop[p, 0] = length1 * (1 - mean1) * per_area
+            hoop[p, 0] = length1 * short1 * per_area
             hoop[p, 1] = (length1 * mean1 + length2 * (1 - mean2)) * per_area
             hoop[p, 2] = length2 * mean2 * per_area
 

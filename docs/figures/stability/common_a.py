@@ -1,0 +1,108 @@
+"""What the maps of docs/stability/time_step.md share: sheets, data, and the amplification of a step."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import mpmkit
+
+DOCS = Path(__file__).parents[2]
+TESTS = DOCS.parent / "tests/validation"
+sys.path.append(str(TESTS))  # scenes whose answers are known are there already
+
+COLOURS = {"usl": "#D55E00", "usf": "#0072B2", "musl": "#009E73"}
+ORDERS = list(COLOURS)
+STRAIN = 1e-6
+"""Size of what is tried in an amplification: everything stays linear."""
+
+
+def sheet(rows: int, columns: int, size: tuple[float, float], **more) -> tuple[Figure, np.ndarray]:
+    """A figure of panels with a light grid."""
+    figure = Figure(figsize=size, dpi=160, layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(rows, columns, squeeze=False, **more)
+    for axes in panels.flat:
+        axes.grid(alpha=0.3, linewidth=0.6)
+        axes.tick_params(labelsize=8)
+    return figure, panels
+
+
+def title(axes: Axes, text: str) -> None:
+    axes.set_title(text, fontsize=9, loc="left")
+
+
+def make(name: str, measure: Callable[[], xr.Dataset], draw: Callable[[xr.Dataset], Figure]) -> None:
+    """Measure into docs/data and draw from there into docs/images/stability; with --draw only draw."""
+    path = DOCS / "data" / f"stability_{name}.nc"
+    if "--draw" not in sys.argv:
+        measure().to_netcdf(path)
+    with xr.open_dataset(path) as data:
+        path = DOCS / "images" / "stability" / f"{name}.png"
+        draw(data.load()).savefig(path, pil_kwargs={"optimize": True})
+
+
+def amplification(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> np.ndarray:
+    """The matrix by which one step multiplies what moves and strains a body at rest, along the first axes.
+
+    Velocities, affine velocities, and stretches or, of a fluid, volume ratios: every one of them is given a
+    little, by itself, and a step is made.
+    """
+    p, ops, group = simulation.particles, simulation.operations, simulation.particles.groups[0]
+    ops.begin()  # the first sorts the particles
+    rest = {name: array.copy() for name, array in p.arrays().items()}
+    tensor = list(np.ndindex(axes, axes))
+    fluid = group.law.uses_equation_of_state
+    fields: list[tuple[str, tuple]] = [("velocity", (axis,)) for axis in range(axes)]
+    fields += [("volume_ratio", ())] if fluid else [("deformation_gradient", at) for at in tensor]
+    fields += [("affine", at) for at in tensor] if simulation.case.scheme.velocity.affine else []
+    columns = []
+    for (field, at), particle in itertools.product(fields, range(len(p))):
+        for name, array in rest.items():
+            getattr(p, name)[...] = array
+        getattr(p, field)[(particle, *at)] += STRAIN
+        if fluid:
+            p.volume[:] = p.volume_ratio * p.initial_volume
+            p.pressure[:] = group.pressure(p.volume_ratio)
+        else:
+            p.volume_ratio[:] = np.linalg.det(p.deformation_gradient)
+            group.law.update_stress(p.motion(group), group.state, dt, p.stress)
+        ops.begin()
+        ops.step(dt)
+        found = [(getattr(p, name) - rest[name])[(slice(None), *index)] for name, index in fields]
+        columns.append(np.concatenate(found) / STRAIN)
+    for name, array in rest.items():
+        getattr(p, name)[...] = array
+    return np.array(columns).T
+
+
+def growth(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> float:
+    """By how much one step can multiply a disturbance: the largest eigenvalue."""
+    return float(np.abs(np.linalg.eigvals(amplification(simulation, dt, axes))).max())
+
+
+def largest_step(
+    simulation: mpmkit.Simulation, low: float, high: float, tried: int = 120, axes: int = 1
+) -> float:
+    """The first step, going up, that lets something grow; by bisection between those tried."""
+
+    def grows(dt: float) -> bool:
+        return growth(simulation, dt, axes) > 1 + 1e-3
+
+    steps = np.geomspace(low, high, tried)
+    first = next((i for i, dt in enumerate(steps) if grows(dt)), None)
+    if not first:
+        return low if first == 0 else high
+    below, above = steps[first - 1 : first + 1]
+    for _ in range(6):
+        middle = np.sqrt(below * above)
+        below, above = (below, middle) if grows(middle) else (middle, above)
+    return float(below)
