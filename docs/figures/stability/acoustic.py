@@ -13,7 +13,8 @@ import math
 import numba
 import numpy as np
 import xarray as xr
-from common_a import COLOURS, DOCS, ORDERS, make, sheet, title
+from maps import COLOURS, DOCS, ORDERS, make
+from maps import panels as new_panels
 from matplotlib.figure import Figure
 
 from mpmkit.case.load import read_json
@@ -92,11 +93,11 @@ def theory(velocity: str, order: str, n: np.ndarray) -> np.ndarray:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    figure, panels = sheet(2, 2, (7.2, 5.8), sharex=True, sharey=True)
+    figure, panels = new_panels(2, 2, (7.2, 5.8), sharex=True, sharey=True)
     n = np.linspace(1, 4.2, 100)
     names = {"wave": "a wave, no free surface", "slump": "a slump"}
     for (scene, velocity), axes in zip(itertools.product(SCENES, VELOCITIES), panels.flat, strict=True):
-        title(axes, f"{names[scene]}, {velocity.upper()}")
+        axes.set_title(f"{names[scene]}, {velocity.upper()}", fontsize=9, loc="left")
         for (j, shape), (i, order) in itertools.product(enumerate(SHAPES), enumerate(ORDERS)):
             one = data.sel(scene=scene, velocity=velocity, shape=shape, order=order)
             x = one.per_axis + 0.09 * (i - 1) + 0.3 * (j - 0.5)

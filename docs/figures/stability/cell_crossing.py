@@ -13,11 +13,14 @@ import itertools
 import numba
 import numpy as np
 import xarray as xr
-from common_a import make, sheet, title
-from manufactured import Bar  # of tests/validation
+from maps import make
+from maps import panels as new_panels
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+
+# isort: split
+from manufactured import Bar  # of tests/validation, which is on the path only now
 
 SHAPES = ["linear", "cpgimp"]
 AMPLITUDES = np.geomspace(0.05, 1.6, 11)
@@ -55,7 +58,7 @@ def measure() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    figure, panels = sheet(1, 2, (8.2, 4.2))
+    figure, panels = new_panels(1, 2, (8.2, 4.2))
     draw_cells(panels[0, 0], data)
     draw_map(figure, panels[0, 1], data)
     return figure
@@ -79,7 +82,7 @@ def draw_cells(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", ylim=(0.003, 1.6))
     axes.set(xlabel="amplitude / cell", ylabel="largest error of displacement / amplitude")
     axes.legend(fontsize=7, frameon=False, loc="upper left", ncols=2)
-    title(axes, "Two particles a cell, USF")
+    axes.set_title("Two particles a cell, USF", fontsize=9, loc="left")
 
 
 def draw_map(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
@@ -98,7 +101,7 @@ def draw_map(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
     bar = figure.colorbar(mesh, ax=axes, label="error, linear / cpGIMP")
     bar.set_ticks([1, 3, 10, 30], labels=["1", "3", "10", "30"])
     axes.legend(fontsize=7, loc="upper right")
-    title(axes, f"{FINE} cells")
+    axes.set_title(f"{FINE} cells", fontsize=9, loc="left")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""What the maps of volumes and energy share: sheets of panels, colours, and data kept beside the figure."""
+"""What the maps of where methods fail share: sheets of panels, colours, and data kept beside the figure."""
 
 import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,22 +16,32 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # beside this folder lies wh
 
 from common import DOCS
 
+sys.path.append(str(DOCS.parent / "tests/validation"))  # scenes whose answers are known are there already
+
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#767676"
 """Okabe and Ito's palette."""
+COLOURS = {"usl": VERMILION, "usf": BLUE, "musl": GREEN}
+ORDERS = list(COLOURS)
 DRAW = "--draw"
 DPI = 160
 
 
-def sheet(title: str, panels: int, width: float = 9.6, height: float = 4.2) -> tuple[Figure, list[Axes]]:
-    """A row of empty panels under one title."""
-    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+def panels(rows: int, columns: int, size: tuple[float, float], **more) -> tuple[Figure, np.ndarray]:
+    """A figure of empty panels, ``(rows, columns)``, with a light grid."""
+    figure = Figure(figsize=size, dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(title, fontsize=10)
-    row = list(figure.subplots(1, panels, squeeze=False)[0])
-    for axes in row:
+    found = figure.subplots(rows, columns, squeeze=False, **more)
+    for axes in found.flat:
         axes.grid(alpha=0.3)
-    return figure, row
+    return figure, found
+
+
+def sheet(title: str, count: int, width: float = 9.6, height: float = 4.2) -> tuple[Figure, list[Axes]]:
+    """A row of empty panels under one title."""
+    figure, row = panels(1, count, (width, height))
+    figure.suptitle(title, fontsize=10)
+    return figure, list(row[0])
 
 
 def make(name: str, measure: Callable[[], xarray.Dataset], draw: Callable[[xarray.Dataset], Figure]) -> None:

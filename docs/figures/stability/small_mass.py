@@ -12,7 +12,9 @@ import itertools
 import numba
 import numpy as np
 import xarray as xr
-from common_a import COLOURS, ORDERS, growth, largest_step, make, sheet, title
+from amplification import growth, largest_step
+from maps import COLOURS, ORDERS, make
+from maps import panels as new_panels
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from stability import FLIP, free_bar  # of tests/validation
@@ -94,7 +96,7 @@ def measure() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    figure, panels = sheet(1, 2, (8.2, 4.6), width_ratios=[1.35, 1])
+    figure, panels = new_panels(1, 2, (8.2, 4.6), width_ratios=[1.35, 1])
     draw_reach(panels[0, 0], data)
     draw_width(panels[0, 1], data)
     return figure
@@ -113,7 +115,7 @@ def draw_reach(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", ylim=(8e-4, 4))
     axes.set(xlabel="reach e over the next node / cell", ylabel="largest stable step / (dx/c)")
     axes.legend(fontsize=7, frameon=False, loc="lower right")
-    title(axes, "A free end, two particles a cell")
+    axes.set_title("A free end, two particles a cell", fontsize=9, loc="left")
 
 
 def draw_width(axes: Axes, data: xr.Dataset) -> None:
@@ -137,7 +139,7 @@ def draw_width(axes: Axes, data: xr.Dataset) -> None:
     axes.set_yticks([0.2, 0.4, 0.7, 1, 2], ["0.2", "0.4", "0.7", "1", "2"])
     axes.minorticks_off()
     axes.legend(fontsize=7, frameon=False, loc="upper left", ncols=2)
-    title(axes, "Thin boxes, cpGIMP, worst reach")
+    axes.set_title("Thin boxes, cpGIMP, worst reach", fontsize=9, loc="left")
 
 
 if __name__ == "__main__":

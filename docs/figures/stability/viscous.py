@@ -13,7 +13,8 @@ import math
 import numba
 import numpy as np
 import xarray as xr
-from common_a import COLOURS, make, sheet, title
+from maps import COLOURS, make
+from maps import panels as new_panels
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from viscous_scenes import SOUND, block, creep, limit
@@ -74,7 +75,7 @@ def measure() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    figure, panels = sheet(1, 2, (7.4, 4.2), width_ratios=[1.25, 1])
+    figure, panels = new_panels(1, 2, (7.4, 4.2), width_ratios=[1.25, 1])
     draw_limits(panels[0, 0], data)
     draw_creep(panels[0, 1], data)
     return figure
@@ -100,7 +101,7 @@ def draw_limits(axes: Axes, data: xr.Dataset) -> None:
                 axes.plot(data.m, 1e3 * one.sel(form="relaxed"), "^", markersize=5, **style)
                 axes.plot(data.m, 1e3 * one.sel(form="exact"), "_", markersize=9, **style)
     axes.set(xscale="log", yscale="log", xlabel="regularisation m / s", ylabel="largest stable step / ms")
-    title(axes, "A block at rest, free surfaces")
+    axes.set_title("A block at rest, free surfaces", fontsize=9, loc="left")
     for scheme, (colour, marker) in MARKS.items():
         axes.plot([], [], marker, color=colour, markersize=5, label=f"explicit, {scheme}")
     axes.plot([], [], "^", color=COLOURS["usl"], markersize=5, label="relaxed, USL, FLIP")
@@ -121,7 +122,7 @@ def draw_creep(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(ratio, ratio, color="black", linewidth=0.9, label="step / limit")
     axes.axvline(81, color="grey", linewidth=0.9, linestyle=":", label="the paper's step")
     axes.set(xscale="log", yscale="log", xlabel="step / viscous limit", ylabel="creep / exact creep")
-    title(axes, "Beyond: a channel below yield")
+    axes.set_title("Beyond: a channel below yield", fontsize=9, loc="left")
     axes.legend(fontsize=7, frameon=False, loc="upper left")
 
 

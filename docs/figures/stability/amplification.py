@@ -1,53 +1,15 @@
-"""What the maps of docs/stability/time_step.md share: sheets, data, and the amplification of a step."""
+"""The amplification of one step near rest: the exact matrix by which it multiplies a disturbance."""
 
 from __future__ import annotations
 
 import itertools
-import sys
-from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
-import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 import mpmkit
 
-DOCS = Path(__file__).parents[2]
-TESTS = DOCS.parent / "tests/validation"
-sys.path.append(str(TESTS))  # scenes whose answers are known are there already
-
-COLOURS = {"usl": "#D55E00", "usf": "#0072B2", "musl": "#009E73"}
-ORDERS = list(COLOURS)
 STRAIN = 1e-6
 """Size of what is tried in an amplification: everything stays linear."""
-
-
-def sheet(rows: int, columns: int, size: tuple[float, float], **more) -> tuple[Figure, np.ndarray]:
-    """A figure of panels with a light grid."""
-    figure = Figure(figsize=size, dpi=160, layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(rows, columns, squeeze=False, **more)
-    for axes in panels.flat:
-        axes.grid(alpha=0.3, linewidth=0.6)
-        axes.tick_params(labelsize=8)
-    return figure, panels
-
-
-def title(axes: Axes, text: str) -> None:
-    axes.set_title(text, fontsize=9, loc="left")
-
-
-def make(name: str, measure: Callable[[], xr.Dataset], draw: Callable[[xr.Dataset], Figure]) -> None:
-    """Measure into docs/data and draw from there into docs/images/stability; with --draw only draw."""
-    path = DOCS / "data" / f"stability_{name}.nc"
-    if "--draw" not in sys.argv:
-        measure().to_netcdf(path)
-    with xr.open_dataset(path) as data:
-        path = DOCS / "images" / "stability" / f"{name}.png"
-        draw(data.load()).savefig(path, pil_kwargs={"optimize": True})
 
 
 def amplification(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> np.ndarray:
