@@ -190,6 +190,9 @@ def test_more_that_is_known_to_fail():
     stick = ['grid.faces={"z_min": "stick"}']
     assert "locks" in " ".join(cautions(load_case(CASES / "slump.json", [*stick, "scheme.volumetric=own"])))
     assert cautions(load_case(CASES / "slump.json", stick)) == []
+    water = ["bodies.0.material.yield_stress=0", "bodies.0.material.consistency=0.001"]
+    assert "loses volume" in " ".join(cautions(load_case(CASES / "slump.json", [*water, "until=30"])))
+    assert cautions(load_case(CASES / "slump.json", water)) == []
     assert "damps" in " ".join(cautions(load_case(CASES / "slump.json", ["scheme.velocity=pic"])))
 
 
