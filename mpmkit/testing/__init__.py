@@ -4,7 +4,7 @@
 >>> from mpmkit_casson import Casson
 >>> test_casson = law_tests(Casson(yield_stress=20, casson_viscosity=0.8), flow_curve=…)
 
-Under pytest each property is then a test of its own. Without pytest, ``for check in law_checks(law): check()``.
+Under pytest each property is then a test of its own; without it, ``for check in law_checks(law): check()``.
 """
 
 from .checks import Check, law_checks, order_checks, shape_checks

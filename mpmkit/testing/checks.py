@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
+from ..errors import GuardStop
 from . import elastic, flight, law_promises, laws, radial, shapes
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
@@ -53,7 +54,7 @@ ON_ORDERS = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.en
 
 @dataclass(frozen=True)
 class Check:
-    """One property of one plug-in. Calling it raises a ``Violation``, one sentence, unless the plug-in has it."""
+    """One property of one plug-in; calling it raises a ``Violation``, one sentence, unless it is there."""
 
     name: str
     kind: str
@@ -64,8 +65,8 @@ class Check:
         __tracebackhide__ = True  # pytest shows the sentence and not our code
         try:
             self.run()
-        except Violation as violation:
-            raise Violation(f"{self.kind} '{self.plugin.name}': {violation}") from None
+        except (Violation, GuardStop) as fault:
+            raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
 
 
 def law_checks(

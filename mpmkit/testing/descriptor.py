@@ -8,7 +8,7 @@ from .violation import Violation, require
 
 
 def descriptor(kind: str, plugin: Plugin) -> None:
-    """Name, citation, API version and a schema, and parameters that come back from a case file as they were."""
+    """Name, citation, API version, schema; and parameters that come back from a case file as they were."""
     try:
         check(type(plugin), kind)
     except (TypeError, ValueError) as error:

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import GuardStop
-from .scenes import DX, RUBBER, SMALL_STEP, Scheme, block, by_number, free_block, shake, simulate
-from .violation import Violation, require, require_close
+from .scenes import DX, RUBBER, SMALL_STEP, STIFFNESS, Scheme, block, by_number, free_block, shake, simulate
+from .violation import require, require_close
 
 GRAVITY = (0.8, 0.8, -9.81)
 
@@ -34,7 +33,7 @@ def momentum(space: str, scheme: Scheme) -> None:
             on_nodes, mass, 1e-13 * mass, lambda step=step: f"the mass on the nodes in step {step}", "kg"
         )
     end = simulation.measures(p)
-    require(end["strain_energy"] > 1e-2, "a body that was shaken has no strain energy after 40 steps")
+    require(float(end["strain_energy"]) > 1e-2, "a body that was shaken has no strain energy after 40 steps")
     require_close(
         np.ravel(end["momentum"])[_axial(space)],
         np.ravel(start["momentum"])[_axial(space)],
@@ -86,17 +85,17 @@ def uniform_motion(space: str, scheme: Scheme) -> None:
     require_close(
         simulation.particles.stress,
         0.0,
-        1e-9 * RUBBER["youngs_modulus"],
+        1e-9 * STIFFNESS,
         lambda p, k: f"component {k} of the stress of a particle in uniform motion",
         "Pa",
     )
 
 
 def energy(space: str, scheme: Scheme) -> None:
-    """A block that swings along its last axis stores what its motion loses, and gets it back: no energy is made.
+    """A block that swings stores what its motion loses, and gets it back: no energy is made.
 
-    The energy that particles and nodes see differs by a few percent of the swing; a stress of the wrong sign or
-    size, or at the wrong time, makes it grow, or leaves the one without the other.
+    What the particles hold differs from what the nodes see by a few percent; a stress of the wrong sign or
+    size, or at the wrong time, makes the energy grow, or keeps it from turning into the other kind.
     """
     lower, upper, domain = block(space, size=8)
     simulation = simulate(space, scheme, [(lower, upper, RUBBER, None)], domain, fraction=0.2)
@@ -105,14 +104,11 @@ def energy(space: str, scheme: Scheme) -> None:
     p.velocity[:, -1] = -0.5 * np.sin(np.pi * (height - height.mean()) / (8 * DX))
     simulation.choose_time_step()
     kinetic, stored = [], []
-    try:
-        for _ in range(60):
-            measured = simulation.measures(p)
-            kinetic.append(float(measured["kinetic_energy"]))
-            stored.append(float(measured["strain_energy"]))
-            simulation.advance()
-    except GuardStop as stop:
-        raise Violation(f"a block of rubber that swings by 5 % came to an end: {stop}") from None
+    for _ in range(60):
+        measured = simulation.measures(p)
+        kinetic.append(float(measured["kinetic_energy"]))
+        stored.append(float(measured["strain_energy"]))
+        simulation.advance()
     of_start, in_store = np.array(kinetic) / kinetic[0], np.array(stored) / kinetic[0]
     require_close(
         of_start + in_store,
@@ -123,8 +119,11 @@ def energy(space: str, scheme: Scheme) -> None:
     turn = int(np.argmin(of_start))
     require(
         in_store[turn] > 0.7,
-        f"a block that swings has stored {100 * in_store[turn]:.3g} % of its energy where it turns; at least 70 % "
-        "is expected",
+        f"a block that swings has stored {100 * in_store[turn]:.3g} % of its energy where it turns; at least "
+        "70 % is expected",
     )
     back = of_start[turn:].max()
-    require(back > 0.5, f"a block that swings has {100 * back:.3g} % of its motion back; at least 50 % is expected")
+    require(
+        back > 0.5,
+        f"a block that swings has {100 * back:.3g} % of its motion back; at least 50 % is expected",
+    )

@@ -6,7 +6,7 @@ import numpy as np
 
 from .law_subject import LawSubject
 from .specimens import plane, random_gradients, simple_shear
-from .violation import Violation, require, require_all, require_close, require_same
+from .violation import Violation, require, require_all, require_same
 
 
 def declared_state(subject: LawSubject) -> None:
@@ -36,7 +36,8 @@ def declared_state(subject: LawSubject) -> None:
         array = specimens.state[name]
         expected = (n, *variable.shape)
         require(
-            array.shape == expected, f"its state '{name}' became of shape {array.shape}; it must stay {expected}"
+            array.shape == expected,
+            f"its state '{name}' became of shape {array.shape}; it must stay {expected}",
         )
         require(bool(np.isfinite(array).all()), f"its state '{name}' is not finite after a motion of 0.2 s")
         require_same(elsewhere.state[name], array[order], lambda *at, n=name: f"state '{n}' {same}")
@@ -99,8 +100,8 @@ def largest_viscosity(subject: LawSubject) -> None:
         require_all(
             viscosity <= allowed,
             lambda i, mu=viscosity, r=rates, said=said, fastest=fastest: (
-                f"its viscosity at {r[i]:.3g} /s is {mu[i]:.6g} Pa s, but it says that up to {fastest:g} /s it "
-                f"is {said:.6g} Pa s at most: an explicit step would be too long"
+                f"its viscosity at {r[i]:.3g} /s is {mu[i]:.6g} Pa s, but it says that it is {said:.6g} Pa s "
+                f"at most, up to {fastest:g} /s: an explicit step would be too long"
             ),
             viscosity - allowed,
         )

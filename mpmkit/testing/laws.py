@@ -46,9 +46,7 @@ def flow_curve(subject: LawSubject) -> None:
     rel = subject.rel or (1e-3 if subject.remembers or subject.law.state else 1e-6)
     rates = np.array([0.5, 5.0])
     steps = 2000 if subject.remembers or subject.law.state else 1
-    found = [
-        subject.respond(simple_shear(np.array([r])), subject.strain / r, steps)[0, 0, 2] for r in rates
-    ]
+    found = [subject.respond(simple_shear(np.array([r])), subject.strain / r, steps)[0, 0, 2] for r in rates]
     expected = curve(rates) * np.ones(2)
     require_close(
         found, expected, rel * np.abs(expected), lambda i: f"steady shear stress at {rates[i]:g} /s", "Pa"
@@ -71,7 +69,9 @@ def dissipation(subject: LawSubject) -> None:
         stored, work = specimens.strain_energy(), specimens.work
         slack = 1e-4 * peak + 1e-12  # of the quadrature over time, and of rounding
         require_all(
-            stored >= -slack, lambda p, e=stored: f"the strain energy of a particle is {e[p]:.6g} J/m³", -stored
+            stored >= -slack,
+            lambda p, e=stored: f"the strain energy of a particle is {e[p]:.6g} J/m³",
+            -stored,
         )
         require_all(
             work >= stored - slack,
@@ -99,7 +99,7 @@ def objectivity(subject: LawSubject) -> None:
 
 
 def turning(subject: LawSubject) -> None:
-    """What stress is left when the motion stops turns with the body: by 1 rad, to what a finite step allows."""
+    """What stress is left when the motion stops turns with the body, by 1 rad in 200 steps."""
     n, steps = 50, 200
     W = random_gradients(n, 6)
     W = (W - W.transpose(0, 2, 1)) / 2
@@ -141,8 +141,10 @@ def extreme_rates(subject: LawSubject) -> None:
     shear = np.abs(stress[:, 0, 2])
     require_all(
         np.diff(shear) >= 0,
-        lambda i: f"stress xz falls from {shear[i]:.6g} Pa at {rates[i]:g} /s to {shear[i + 1]:.6g} Pa at "
-        f"{rates[i + 1]:g} /s",
+        lambda i: (
+            f"stress xz falls from {shear[i]:.6g} Pa at {rates[i]:g} /s to {shear[i + 1]:.6g} Pa at "
+            f"{rates[i + 1]:g} /s"
+        ),
     )
 
 

@@ -23,8 +23,8 @@ def law_tests(
 ) -> Test:
     """A test function, to be given a name that begins with ``test``, which has a case for every check.
 
-    Simple shear on every plane and against the flow curve, dissipation, objectivity, no stress and no infinity
-    at rest, independence of the other particles, and that it does what it says: state, wave speed, viscosity.
+    Simple shear on every plane and against the flow curve, dissipation, objectivity, no stress at rest,
+    independence of the other particles, and whether it does as it says: state, wave speed, viscosity.
 
     Args:
         law: with parameters.

@@ -51,11 +51,14 @@ def radial_partition_of_unity(shape: ShapeFunction) -> None:
     for name, values, least in (("weight", weight, -1e-14), ("hoop weight", hoop * l[:, None], -1e-12)):
         require_all(
             values >= least,
-            lambda p, a, n=name, v=values: f"the radial {n} of node base + {a} at r = {r[p] / DX:.3g} cells is "
-            f"{v[p, a]:.3g}",
+            lambda p, a, n=name, v=values: (
+                f"the radial {n} of node base + {a} at r = {r[p] / DX:.3g} cells is {v[p, a]:.3g}"
+            ),
             -values,
         )
-    require_close(weight.sum(axis=1), 1.0, 1e-14, lambda p: f"the sum of weights at r = {r[p] / DX:.3g} cells")
+    require_close(
+        weight.sum(axis=1), 1.0, 1e-14, lambda p: f"the sum of weights at r = {r[p] / DX:.3g} cells"
+    )
     require_close(
         gradient.sum(axis=1) * DX,
         0.0,

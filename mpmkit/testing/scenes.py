@@ -15,7 +15,8 @@ DX = 0.0625
 SMALL_STEP = 0.1
 """Fraction of the critical step at which even USL with linear shape functions survives its nearly empty nodes
 long enough: a particle that enters a cell at speed v leaves the unstable range in (fraction) c / v steps."""
-RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
+STIFFNESS = 1e5
+RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": STIFFNESS, "poisson_ratio": 0.3}
 AXES = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}
 SPACES = tuple(AXES)
 

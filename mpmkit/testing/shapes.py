@@ -1,4 +1,4 @@
-"""What every shape function must be: a partition of unity that reproduces linear fields and knows its gradient."""
+"""What every shape function must be: a partition of unity, linear at least, that knows its own gradient."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def cloud(dim: int, n: int = N, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
 
 
 def tables(shape: ShapeFunction, position: np.ndarray, half_size: np.ndarray) -> Tables:
-    """base ``(n, dim)``, weight and gradient ``(n, dim, support)`` on cells of ``DX``; unfilled ones are NaN."""
+    """base ``(n, dim)``, weight and gradient ``(n, dim, support)`` on cells of ``DX``; NaN if not filled."""
     n, dim = position.shape
     base = np.full((n, dim), -99, dtype=np.int32)
     weight = np.full((n, dim, shape.support), np.nan)
@@ -43,7 +43,7 @@ def nodes_of(shape: ShapeFunction, base: np.ndarray) -> np.ndarray:
 
 
 def on_all_nodes(shape: ShapeFunction, base: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """``(n, CELLS + 5)`` values of one axis on the nodes from -2 on, whichever ``base`` they were stored by."""
+    """``(n, CELLS + 5)`` values of one axis on the nodes from -2 on, whatever their ``base``."""
     n = len(base)
     dense = np.zeros((n, CELLS + 5))
     for a in range(shape.support):
@@ -54,9 +54,9 @@ def on_all_nodes(shape: ShapeFunction, base: np.ndarray, values: np.ndarray) -> 
 
 
 def near_kink(position: np.ndarray, half_size: np.ndarray, within: float) -> np.ndarray:
-    """Whether the middle or an edge of the box is so near, in cells, to a node or to the middle between two."""
+    """Whether the middle or an edge of the box is so near, in cells, to a node or the middle of a cell."""
     edges = 2 * np.stack([position - half_size, position, position + half_size]) / DX
-    return (np.abs(edges - np.rint(edges)) < 2 * within).any(axis=0)
+    return np.any(np.abs(edges - np.rint(edges)) < 2 * within, axis=0)
 
 
 def _at(position: np.ndarray) -> str:
@@ -70,7 +70,9 @@ def partition_of_unity(shape: ShapeFunction) -> None:
         _, weight, gradient = tables(shape, x, l)
         require_all(
             weight >= -1e-15,
-            lambda p, d, a, x=x, w=weight: f"the weight of node base + {a} is {w[p, d, a]:.3g} {_at(x[p, d])}",
+            lambda p, d, a, x=x, w=weight: (
+                f"the weight of node base + {a} is {w[p, d, a]:.3g} {_at(x[p, d])}"
+            ),
             -weight,
         )
         require_close(
@@ -127,7 +129,9 @@ def gradients(shape: ShapeFunction) -> None:
 
 def nodes_within_reach(shape: ShapeFunction) -> None:
     """A particle touches nodes from the one below its cell to the second above its lower node, no others."""
-    require(shape.particle_domain in DOMAINS, f"its particle_domain is '{shape.particle_domain}', not {DOMAINS}")
+    require(
+        shape.particle_domain in DOMAINS, f"its particle_domain is '{shape.particle_domain}', not {DOMAINS}"
+    )
     x, l = cloud(2)
     base, *_ = tables(shape, x, l)
     cell = np.floor(x / DX)
@@ -154,7 +158,9 @@ def continuity(shape: ShapeFunction) -> None:
             on_all_nodes(shape, above[:, 0], other[:, 0]),
             on_all_nodes(shape, below[:, 0], one[:, 0]),
             1e-8,
-            lambda p, node, name=name: f"the {name} of node {node - 2} just beyond a place {_at(kinks[p, 0])}",
+            lambda p, node, name=name: (
+                f"the {name} of node {node - 2} just beyond a place {_at(kinks[p, 0])}"
+            ),
         )
 
 
@@ -168,7 +174,9 @@ def place_in_the_lattice(shape: ShapeFunction) -> None:
         moved, *found = tables(shape, x + cells * DX, l)
         require_all(
             (moved == base + cells) | ~clear,
-            lambda p, d, m=moved, c=cells: f"{c} cells further on, the base is {m[p, d]}, not {base[p, d] + c}",
+            lambda p, d, m=moved, c=cells: (
+                f"{c} cells further on, the base is {m[p, d]}, not {base[p, d] + c}"
+            ),
         )
         for name, one, other in (("weight", weight, found[0]), ("gradient", gradient * DX, found[1] * DX)):
             require_close(
@@ -188,7 +196,9 @@ def mirror(shape: ShapeFunction) -> None:
         on_all_nodes(shape, mirrored[:, 0], weight2[:, 0])[:, ::-1],
         on_all_nodes(shape, base[:, 0], weight[:, 0]),
         1e-13,
-        lambda p, node: f"the weight of node {node - 2}'s mirror image, of a particle mirrored {_at(x[p, 0])},",
+        lambda p, node: (
+            f"the weight of node {node - 2}'s mirror image, of a particle mirrored {_at(x[p, 0])},"
+        ),
     )
 
 
@@ -199,6 +209,8 @@ def batch_order(shape: ShapeFunction) -> None:
     whole, given = tables(shape, x, l), (x.copy(), l.copy())
     for found, kept, name in zip((x, l), given, ("position", "half_size"), strict=True):
         require_same(found, kept, lambda p, d, n=name: f"{n}, which it must not change,")
-    for index, how in ((order, "in another order"), (np.array([7]), "alone")):
+    for index, how in ((order, "in another order"), (np.array([N - 1]), "alone")):
         for one, other in zip(tables(shape, x[index], l[index]), whole, strict=True):
-            require_same(one, other[index], lambda *at, h=how: f"a table of a particle that is handed over {h}")
+            require_same(
+                one, other[index], lambda *at, h=how: f"a table of a particle that is handed over {h}"
+            )

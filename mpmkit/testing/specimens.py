@@ -39,10 +39,10 @@ class Specimens:
         """What the law is told at velocity gradients ``(n, 3, 3)``, 1/s."""
         F = self.F if self.law.needs_deformation_gradient else None
         J = np.linalg.det(self.F)
-        return Motion(np.ascontiguousarray(L), J, np.zeros(len(L)), self.density, F, self.sound_speed)
+        return Motion(np.array(L, order="C"), J, np.zeros(len(L)), self.density, F, self.sound_speed)
 
     def drive(self, L: np.ndarray, duration: float, steps: int = 1) -> np.ndarray:
-        """Move at these velocity gradients, 1/s, for so many seconds; the stress at the end, ``(n, 3, 3)``."""
+        """Move at velocity gradients L, 1/s, for so many seconds; the stress at the end, ``(n, 3, 3)``."""
         dt = duration / steps
         A = dt * L
         increment = np.eye(3) + A + A @ A / 2 + A @ A @ A / 6 + A @ A @ A @ A / 24  # exp(dt L)

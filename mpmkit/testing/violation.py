@@ -21,9 +21,7 @@ def require(holds: bool, sentence: str) -> None:
         raise Violation(sentence)
 
 
-def require_all(
-    holds: np.ndarray, sentence: Callable[..., str], worst: np.ndarray | None = None
-) -> None:
+def require_all(holds: np.ndarray, sentence: Callable[..., str], worst: np.ndarray | None = None) -> None:
     """Raise a ``Violation`` with the sentence for an index where it does not hold.
 
     Args:
