@@ -14,8 +14,8 @@ STIFFNESS = 0.05
 class Thixotropic(ConstitutiveLaw):
     """tau = (1 + λ) tau0 + mu_p γ̇ beyond the yield stress,  dλ/dt = 1/T - α λ γ̇.
 
-    At rest the yield stress grows by A_thix = tau0 / T. Elastic below it, with G = 0.05 ρ c²: s is turned with
-    the material (Jaumann), strained, and drawn back to the yield surface, backward Euler in both τ and λ:
+    At rest the yield stress grows by A_thix = tau0 / T. Elastic below it, with G = 0.05 ρ c²: s is turned
+    with the material (Jaumann), strained, and drawn back to the flow curve, backward Euler in τ and λ:
 
         τ + G Δt γ̇ = τ*,    λ = (λ_old + Δt/T) / (1 + α γ̇ Δt).
     """
