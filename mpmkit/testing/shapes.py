@@ -60,7 +60,7 @@ def near_kink(position: np.ndarray, half_size: np.ndarray, within: float) -> np.
 
 
 def _at(position: np.ndarray) -> str:
-    return f"at {position / DX:.9g} cells from a node"
+    return f"at x = {position / DX:.9g} cells"
 
 
 def partition_of_unity(shape: ShapeFunction) -> None:
