@@ -14,13 +14,14 @@ RadialTables = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def radial_tables(shape: ShapeFunction, radius: np.ndarray, half_size: np.ndarray) -> RadialTables:
     """base ``(n,)``, weight, gradient and hoop ``(n, support)``.
 
-    As the solver does it: the tables of both axes first, then the radial ones over them.
+    As the solver does it: all arrays but the hoop weights are strided, and nothing has filled them.
     """
-    both = np.column_stack([radius, radius])
-    base, weight, gradient = tables(shape, both, np.column_stack([half_size, half_size]))
-    base, weight, gradient = base[:, 0], weight[:, 0], gradient[:, 0]  # strided views, as in a scene
-    hoop = np.full((len(radius), shape.support), np.nan)
-    shape.fill_radial(radius, half_size, DX, base, weight, gradient, hoop)
+    n, support = len(radius), shape.support
+    r, l = (np.column_stack([values, values])[:, 0] for values in (radius, half_size))
+    base = np.full((n, 2), -99, dtype=np.int32)[:, 0]
+    weight, gradient = np.full((2, n, 2, support), np.nan)[:, :, 0]
+    hoop = np.full((n, support), np.nan)
+    shape.fill_radial(r, l, DX, base, weight, gradient, hoop)
     return base, weight, gradient, hoop
 
 

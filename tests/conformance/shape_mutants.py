@@ -20,7 +20,12 @@ class Hats(Sound, ShapeFunction):
         gradient[..., 0], gradient[..., 1] = -1 / cell_size, 1 / cell_size
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
+        self.fill_axis(radius, half_size, cell_size, base, weight, gradient)
         hoop[:] = weight / radius[:, None]
+
+    def fill_axis(self, radius, half_size, cell_size, base, weight, gradient):
+        one = (slice(None), None)
+        self.fill(radius[one], half_size[one], cell_size, base[one], weight[one], gradient[one])
 
 
 class GradientOffByACell(Hats):
@@ -100,6 +105,7 @@ class LocalLattice(Hats):
 
 class NoHoop(Hats):
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
+        self.fill_axis(radius, half_size, cell_size, base, weight, gradient)
         hoop[:] = 0.0
 
 
@@ -107,7 +113,15 @@ class HoopOfTheCell(Hats):
     """N over the cell size, not over r."""
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
+        self.fill_axis(radius, half_size, cell_size, base, weight, gradient)
         hoop[:] = weight / cell_size
+
+
+class RadialTablesOfNobody(Hats):
+    """Leaves the radial tables to whoever filled them before."""
+
+    def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
+        hoop[:] = 1 / radius[:, None]
 
 
 class Lopsided(Hats):

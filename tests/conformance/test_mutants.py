@@ -93,6 +93,7 @@ SHAPE_MUTANTS = [
     (shape_mutants.NoHoop, "radial expansion"),
     (shape_mutants.HoopOfTheCell, "radial expansion"),
     (shape_mutants.HoopOfTheCell, "far from the axis"),
+    (shape_mutants.RadialTablesOfNobody, "radial partition of unity"),
     (shape_mutants.Lopsided, "mirror"),
     (shape_mutants.UnknownDomain, "nodes within reach"),
 ]

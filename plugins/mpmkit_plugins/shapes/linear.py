@@ -22,7 +22,8 @@ class Linear(ShapeFunction):
         _fill(position, 1 / cell_size, base, weight, gradient)
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop) -> None:
-        # A point has no extent to average over: the tables of ``fill`` stand, and N/r is taken at the point.
+        # A point has no extent to average over: the tables are those of ``fill``, and N/r is taken at it.
+        _fill(radius[:, None], 1 / cell_size, base[:, None], weight[:, None], gradient[:, None])
         np.divide(weight, radius[:, None], out=hoop)
 
 
