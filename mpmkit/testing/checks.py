@@ -90,7 +90,8 @@ def law_checks(
 
 def shape_checks(shape: ShapeFunction) -> list[Check]:
     """What every shape function must be."""
-    return _of("shape", shape, [(check.__name__, partial(check, shape)) for check in ON_SHAPES])
+    chosen = (*ON_SHAPES, shapes.barely_touched_nodes) if shape.smooth else ON_SHAPES
+    return _of("shape", shape, [(check.__name__, partial(check, shape)) for check in chosen])
 
 
 def order_checks(order: UpdateOrder) -> list[Check]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import ShapeFunction
-from .shapes import CELLS, DX, N, nodes_of, tables
+from .tables import CELLS, DX, N, nodes_of, tables
 from .violation import require_all, require_close
 
 RadialTables = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]

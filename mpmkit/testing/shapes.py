@@ -5,58 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import ShapeFunction
+from .tables import CELLS, DX, N, cloud, near_kink, nodes_of, on_all_nodes, tables
 from .violation import require, require_all, require_close, require_same
 
-DX = 0.05
-CELLS = 7
-N = 400
 DOMAINS = ("strain", "fixed", "stretch", "volume")
-
-Tables = tuple[np.ndarray, np.ndarray, np.ndarray]
-
-
-def cloud(dim: int, n: int = N, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and half-sizes, among them boxes as wide as a cell and positions on nodes and mid-cells."""
-    rng = np.random.default_rng(seed)
-    position = rng.uniform(0.0, CELLS * DX, (n, dim))
-    half_size = rng.uniform(0.05, 0.5, (n, dim)) * DX
-    half_size[: n // 4] = DX / 2
-    half_size[n // 4 : n // 2] = DX / 4
-    position[: n // 8] = DX * rng.integers(0, CELLS + 1, (n // 8, dim))
-    position[n // 8 : n // 4] = DX * (rng.integers(0, CELLS, (n // 4 - n // 8, dim)) + 0.5)
-    return position, half_size
-
-
-def tables(shape: ShapeFunction, position: np.ndarray, half_size: np.ndarray) -> Tables:
-    """base ``(n, dim)``, weight and gradient ``(n, dim, support)`` on cells of ``DX``; NaN if not filled."""
-    n, dim = position.shape
-    base = np.full((n, dim), -99, dtype=np.int32)
-    weight = np.full((n, dim, shape.support), np.nan)
-    gradient = np.full((n, dim, shape.support), np.nan)
-    shape.fill(position, half_size, DX, base, weight, gradient)
-    return base, weight, gradient
-
-
-def nodes_of(shape: ShapeFunction, base: np.ndarray) -> np.ndarray:
-    """Positions of the nodes touched, m, ``(..., support)``."""
-    return (base[..., None] + np.arange(shape.support)) * DX
-
-
-def on_all_nodes(shape: ShapeFunction, base: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """``(n, CELLS + 5)`` values of one axis on the nodes from -2 on, whatever their ``base``."""
-    n = len(base)
-    dense = np.zeros((n, CELLS + 5))
-    for a in range(shape.support):
-        node = base + a + 2
-        inside = (node >= 0) & (node < dense.shape[1])
-        np.add.at(dense, (np.flatnonzero(inside), node[inside]), values[inside, a])
-    return dense
-
-
-def near_kink(position: np.ndarray, half_size: np.ndarray, within: float) -> np.ndarray:
-    """Whether the middle or an edge of the box is so near, in cells, to a node or the middle of a cell."""
-    edges = 2 * np.stack([position - half_size, position, position + half_size]) / DX
-    return np.any(np.abs(edges - np.rint(edges)) < 2 * within, axis=0)
 
 
 def _at(position: np.ndarray) -> str:
@@ -162,6 +114,27 @@ def continuity(shape: ShapeFunction) -> None:
                 f"the {name} of node {node - 2} just beyond a place {_at(kinks[p, 0])}"
             ),
         )
+
+
+def barely_touched_nodes(shape: ShapeFunction) -> None:
+    """A node that is only just touched has a gradient as small as its weight, if gradients are smooth.
+
+    The force on a node goes with the gradient and its mass with the weight: (Δx N')² ≤ 4 N over the width of
+    the box in cells, to the last digit. Rounding that leaves a gradient alone throws particles out.
+    """
+    places = np.array([4.0, 4.2, 3.8, 3.5, 4.3])
+    away = np.concatenate([[0.0], np.geomspace(1e-17, 1e-2, 60)])
+    x = DX * (places[:, None, None] + np.array([-1.0, 1.0])[:, None] * away).reshape(-1, 1)
+    l = np.full_like(x, 0.2 * DX)
+    _, weight, gradient = tables(shape, x, l)
+    squared = (gradient * DX) ** 2
+    require_all(
+        squared <= 4 / 0.4 * np.maximum(weight, 0.0),
+        lambda p, d, a: (
+            f"{_at(x[p, d])}, node base + {a} has a gradient of {gradient[p, d, a] * DX:.3g} per cell and a "
+            f"weight of {weight[p, d, a]:.3g}"
+        ),
+    )
 
 
 def place_in_the_lattice(shape: ShapeFunction) -> None:

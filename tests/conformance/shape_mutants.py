@@ -1,4 +1,4 @@
-"""Hat functions with nothing wrong with them, and with one fault each."""
+"""Hat functions and splines with nothing wrong with them, and with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -26,6 +26,28 @@ class Hats(Sound, ShapeFunction):
     def fill_axis(self, radius, half_size, cell_size, base, weight, gradient):
         one = (slice(None), None)
         self.fill(radius[one], half_size[one], cell_size, base[one], weight[one], gradient[one])
+
+
+class Splines(Hats):
+    """Quadratic ones, which have nothing wrong with them either."""
+
+    support = 3
+    smooth = True
+
+    def fill(self, position, half_size, cell_size, base, weight, gradient):
+        base[:] = np.floor(position / cell_size - 0.5)
+        x = position / cell_size - base - 1
+        weight[..., 0], weight[..., 1], weight[..., 2] = (0.5 - x) ** 2 / 2, 0.75 - x**2, (0.5 + x) ** 2 / 2
+        gradient[..., 0], gradient[..., 1], gradient[..., 2] = x - 0.5, -2 * x, x + 0.5
+        gradient /= cell_size
+
+
+class WeightByDifference(Splines):
+    """What the last node gets is what the others leave: rounding, where that is little."""
+
+    def fill(self, position, half_size, cell_size, base, weight, gradient):
+        super().fill(position, half_size, cell_size, base, weight, gradient)
+        weight[..., 2] = np.maximum(1 - weight[..., 0] - weight[..., 1], 0.0)
 
 
 class GradientOffByACell(Hats):

@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import leggauss
 from mpmkit.registry import installed
 from mpmkit.testing import shape_checks
 from mpmkit.testing.radial import radial_tables, rings
-from mpmkit.testing.shapes import CELLS, DX, cloud, tables
+from mpmkit.testing.tables import CELLS, DX, cloud, tables
 
 SHAPES = {name: plugin() for name, plugin in installed().of_kind("shape").items()}
 
