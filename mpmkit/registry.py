@@ -121,7 +121,7 @@ def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
     loaded: list[Registered | Problem] = []
     for kind, plugin in _provided(entry_point.load()):
         try:
-            _check(plugin, kind)
+            check(plugin, kind)
             loaded.append(Registered(kind, plugin, distribution, version, entry_name))
         except Exception as error:
             name = getattr(plugin, "name", None)
@@ -151,7 +151,8 @@ def _provided(module: ModuleType) -> Iterator[tuple[str, type[Plugin]]]:
                 yield kinds[hook.name], plugin
 
 
-def _check(plugin: type[Plugin], kind: str) -> None:
+def check(plugin: type[Plugin], kind: str) -> None:
+    """Raise a TypeError or ValueError, with the reason, unless a plug-in can be used as one of this kind."""
     contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")

@@ -12,7 +12,7 @@ import click
 
 from .. import __version__
 from ..errors import MpmkitError, OutputError
-from . import bench, chart, compare, plan, plugins, rerun, run, schema, stability, study
+from . import bench, chart, compare, new_plugin, plan, plugins, rerun, run, schema, stability, study
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
@@ -27,7 +27,7 @@ def commands(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for module in (run, rerun, plan, compare, study, chart, stability, bench, plugins, schema):
+for module in (run, rerun, plan, compare, study, chart, stability, bench, plugins, new_plugin, schema):
     commands.add_command(module.command)
 
 

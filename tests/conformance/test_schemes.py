@@ -12,8 +12,9 @@ import numba
 import numpy as np
 import pytest
 
-import mpmkit
 from mpmkit.registry import installed
+from mpmkit.testing import flight, order_checks, scenes
+from mpmkit.testing.scenes import DX, RUBBER, SMALL_STEP, SPACES, by_number, shake
 
 REGISTRY = installed()
 SCHEMES = list(product(*(REGISTRY.of_kind(kind) for kind in ("shape", "order", "velocity"))))
@@ -21,12 +22,6 @@ VELOCITIES = list(REGISTRY.of_kind("velocity"))
 PAIRS = list(product(REGISTRY.of_kind("shape"), REGISTRY.of_kind("order")))
 FEWER_SCHEMES = [(*pair, VELOCITIES[i % len(VELOCITIES)]) for i, pair in enumerate(PAIRS)]
 """Every shape function with every order, and every velocity update with some of them."""
-SPACES = ("plane-strain", "axisymmetric", "3d")
-DX = 0.0625
-SMALL_STEP = 0.1
-"""Fraction of the critical step at which even USL with linear shape functions survives its nearly empty nodes
-long enough: a particle that enters a cell at speed v leaves the unstable range in (fraction) c / v steps."""
-RUBBER = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
 SYRUP = {"law": "newtonian", "density": 1200.0, "viscosity": 5.0, "sound_speed": 10.0}
 CONCRETE = {
     "law": "herschel-bulkley-evp",
@@ -47,136 +42,31 @@ def _one_thread():
 
 
 def simulate(space, scheme, bodies, domain, faces=None, gravity=None, fraction=0.4, volumetric="own"):
-    """A scene on cells of DX; ``domain`` in cells, ``bodies`` as (corner, corner, material, velocity)."""
-    axes = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}[space]
-    shape, order, velocity = scheme
-    case = mpmkit.parse_case(
-        {
-            "space": space,
-            "until": 1.0,
-            "gravity": gravity or [0.0] * len(axes),
-            "grid": {
-                "cell_size": DX,
-                "domain": {a: [low * DX, high * DX] for a, (low, high) in zip(axes, domain, strict=True)},
-                "faces": faces or {},
-            },
-            "bodies": [
-                {
-                    "shape": {
-                        "kind": "box",
-                        "lower": [DX * x for x in lower],
-                        "upper": [DX * x for x in upper],
-                    },
-                    "material": material,
-                    "velocity": velocity,
-                }
-                for lower, upper, material, velocity in bodies
-            ],
-            "scheme": {
-                "shape": shape,
-                "order": order,
-                "velocity": velocity,
-                "volumetric": volumetric,
-                "time_step": {"fraction": fraction},
-            },
-        }
-    )
-    return mpmkit.Simulation(case)
+    """A scene on cells of DX, of a shape, an order and a velocity update."""
+    named = dict(zip(("shape", "order", "velocity"), scheme, strict=True), volumetric=volumetric)
+    return scenes.simulate(space, named, bodies, domain, faces, gravity, fraction)
 
 
-def shake(simulation, size=0.5, seed=21):
-    """Add a smooth velocity field, so that the body deforms and turns; it vanishes on the axis r = 0."""
-    p = simulation.particles
-    x = (p.position - p.position.mean(axis=0)) / DX
-    if simulation.case.space == "axisymmetric":
-        x[:, 0] = p.position[:, 0] / DX
-    rng = np.random.default_rng(seed)
-    waves = rng.uniform(-0.4, 0.4, (p.dim, p.dim))
-    still = p.velocity[:, 0].copy()
-    p.velocity += size * np.sin(x @ waves)
-    if simulation.case.space == "axisymmetric":
-        p.velocity[:, 0] = still + size * np.sin(0.3 * p.position[:, 0] / DX)
+# --- Free flight --------------------------------------------------------------------------------------------
 
 
-def by_number(simulation, field="position"):
-    p = simulation.particles
-    return getattr(p, field)[np.argsort(p.number)]
-
-
-def block(space, corner=3, size=4):
-    """Corners of a block in cells, and a domain with room around it; a cylinder if axisymmetric."""
-    dim = 3 if space == "3d" else 2
-    lower, upper = [corner] * dim, [corner + size] * dim
-    if space == "axisymmetric":
-        lower[0], upper[0] = 0, size
-    return lower, upper, [[0, 2 * corner + size]] * dim
-
-
-# --- Conservation -------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    "check",
+    [
+        pytest.param(check, id=f"{name}: {check.name}")
+        for name, order in REGISTRY.of_kind("order").items()
+        for check in order_checks(order())
+    ],
+)
+def test_conformance(check):
+    check()
 
 
 @each_scheme
 @each_space
-def test_mass_and_momentum_are_kept_by_a_deforming_body(space, scheme):
-    """No wall, no gravity: Σ m and Σ m v to rounding; of an axisymmetric body the axial component."""
-    lower, upper, domain = block(space)
-    velocity = [5.0, 4.0, 3.0][: len(lower)]
-    if space == "axisymmetric":
-        velocity[0] = 0.0
-    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain, fraction=SMALL_STEP)
-    shake(simulation)
-    start = simulation.measures(simulation.particles)
-    scale = float(np.sum(simulation.particles.mass * np.linalg.norm(simulation.particles.velocity, axis=1)))
-    for _ in range(40):
-        simulation.advance()
-        nodal_mass = simulation.operations.window.nodes[:, 0].sum()
-        assert nodal_mass == pytest.approx(start["total_mass"], rel=1e-13)
-    end = simulation.measures(simulation.particles)
-    assert end["strain_energy"] > 1e-2  # J: it did deform
-    assert end["total_mass"] == pytest.approx(start["total_mass"], rel=1e-14)
-    kept = slice(1, None) if space == "axisymmetric" else slice(None)
-    np.testing.assert_allclose(end["momentum"][kept], start["momentum"][kept], rtol=0, atol=1e-12 * scale)
-
-
-@each_scheme
-@each_space
-def test_free_fall_is_a_parabola(space, scheme):
-    """The centre of mass of a deforming body falls as x0 + Σ dt v, v = v0 + Σ dt g, to rounding."""
-    lower, upper, domain = block(space)
-    dim = len(lower)
-    velocity, gravity = [3.0] * dim, [0.8] * (dim - 1) + [-9.81]
-    if space == "axisymmetric":
-        velocity[0] = gravity[0] = 0.0
-    simulation = simulate(
-        space, scheme, [(lower, upper, RUBBER, velocity)], domain, gravity=gravity, fraction=SMALL_STEP
-    )
-    shake(simulation)
-    p = simulation.particles
-    v = p.mass @ p.velocity / p.mass.sum()
-    x = p.mass @ p.position / p.mass.sum()
-    for _ in range(40):
-        dt = simulation.advance()
-        v = v + dt * np.array(gravity)
-        x = x + dt * v
-    kept = slice(1, None) if space == "axisymmetric" else slice(None)
-    np.testing.assert_allclose((p.mass @ p.velocity / p.mass.sum())[kept], v[kept], rtol=0, atol=1e-12)
-    np.testing.assert_allclose((p.mass @ p.position / p.mass.sum())[kept], x[kept], rtol=0, atol=1e-12)
-
-
-@each_scheme
-@each_space
-def test_uniform_motion_strains_nothing(space, scheme):
-    lower, upper, domain = block(space)
-    velocity = [0.7, -0.4, 0.5][: len(lower)]
-    if space == "axisymmetric":
-        velocity[0] = 0.0
-    simulation = simulate(space, scheme, [(lower, upper, RUBBER, velocity)], domain)
-    start = by_number(simulation).copy()
-    for _ in range(30):
-        simulation.advance()
-    shift = simulation.time * np.array(velocity)
-    np.testing.assert_allclose(by_number(simulation), start + shift, rtol=0, atol=1e-13)
-    assert np.abs(simulation.particles.stress).max() < 1e-9 * RUBBER["youngs_modulus"]
+@pytest.mark.parametrize("check", [flight.momentum, flight.free_fall, flight.uniform_motion])
+def test_free_flight(check, space, scheme):
+    check(space, dict(zip(("shape", "order", "velocity"), scheme, strict=True), volumetric="own"))
 
 
 # --- Threads ------------------------------------------------------------------------------------------------

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_laws import DENSITY, LAWS, RATES, SOUND_SPEED, Specimens, make, simple_shear
+from test_laws import LAWS, RATES, make
 
 from mpmkit.contracts import REST_SHEAR_RATE, ElastoviscoplasticLaw, maxwell
+from mpmkit.testing.specimens import DENSITY, SOUND_SPEED, Specimens, simple_shear
 
 TAU0, K, N = 188.91, 45.65, 1.33
 EVP = {name: law for name, law in LAWS.items() if issubclass(law, ElastoviscoplasticLaw)}

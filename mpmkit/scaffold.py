@@ -1,0 +1,110 @@
+"""A new plug-in's distribution, written from ``templates/``."""
+
+from __future__ import annotations
+
+import importlib.util
+import keyword
+import os
+import re
+import shutil
+import tempfile
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+
+from . import __version__
+from .errors import CaseError
+from .output.atomic import cannot_write
+from .registry import installed
+
+KINDS = {"law": "constitutive law", "shape": "shape function", "order": "update order"}
+"""Kinds of plug-ins that there are templates for, and what they are called."""
+PREFIX = "mpmkit-"
+NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+LONGEST_NAME = 50
+
+
+def new_plugin(name: str, kind: str, directory: Path | None = None) -> Path:
+    """Write a distribution that registers a plug-in, with tests that it passes, and return its directory.
+
+    Args:
+        name: what a case file will say; ``mpmkit-`` before it is taken as the distribution's.
+        kind: one of ``KINDS``.
+        directory: to be made; ``mpmkit-NAME`` unless given.
+
+    Raises:
+        CaseError: the name cannot be one, or is taken, or the directory exists.
+        OutputError: it cannot be written. Nothing is left behind.
+    """
+    plugin = name.removeprefix(PREFIX)
+    words = _words(name, plugin)
+    _refuse_taken(kind, plugin, words["module"])
+    directory = Path(PREFIX + plugin) if directory is None else directory
+    if os.path.lexists(directory):
+        raise CaseError(f"'{directory}' exists already; name another directory with --out")
+    words |= {"kind_in_words": KINDS[kind], "mpmkit_version": ".".join(__version__.split(".")[:2])}
+    _write(directory, {path: _filled(template, words) for path, template in _plan(kind, words).items()})
+    return directory
+
+
+def _words(name: str, plugin: str) -> dict[str, str]:
+    """What the templates leave open, by the name of the plug-in."""
+    class_name = "".join(part.capitalize() for part in plugin.split("-"))
+    if not NAME.fullmatch(plugin) or len(plugin) > LONGEST_NAME or keyword.iskeyword(class_name):
+        raise CaseError(
+            f"'{name}' cannot be the name of a plug-in; it must be at most {LONGEST_NAME} lower-case "
+            "letters, digits and single hyphens, begin with a letter, and make a class name of Python"
+        )
+    identifier = plugin.replace("-", "_")
+    return {
+        "name": plugin,
+        "distribution": PREFIX + plugin,
+        "identifier": identifier,
+        "module": f"mpmkit_{identifier}",
+        "class_name": class_name,
+    }
+
+
+def _refuse_taken(kind: str, plugin: str, module: str) -> None:
+    taken = installed().plugins[kind].get(plugin)
+    if taken is not None:
+        raise CaseError(
+            f"there is a {KINDS[kind]} '{plugin}' already, of {taken.distribution}; choose another name"
+        )
+    if importlib.util.find_spec(module) is not None:
+        raise CaseError(
+            f"there is a module {module} already in this environment; choose another name than '{plugin}'"
+        )
+
+
+def _plan(kind: str, words: dict[str, str]) -> dict[str, str]:
+    """Files of the distribution, and the templates that they are made from."""
+    return {
+        "pyproject.toml": "pyproject.toml",
+        "README.md": "README.md",
+        "case.json": f"{kind}/case.json",
+        f"src/{words['module']}.py": f"{kind}/module.py",
+        f"tests/test_{words['identifier']}.py": f"{kind}/test.py",
+    }
+
+
+def _filled(template: str, words: dict[str, str]) -> str:
+    source = files(__package__).joinpath("templates", *f"{template}.template".split("/"))
+    return Template(source.read_text(encoding="utf-8")).substitute(words)
+
+
+def _write(directory: Path, contents: dict[str, str]) -> None:
+    """All files or none: they are written beside the directory, which then takes its name."""
+    partial = None
+    try:
+        directory.parent.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=f".{directory.name}.", dir=directory.parent))
+        partial.chmod(0o755)
+        for path, text in contents.items():
+            (partial / path).parent.mkdir(exist_ok=True)
+            (partial / path).write_text(text, encoding="utf-8")
+        partial.rename(directory)
+    except OSError as error:
+        if partial is not None:
+            shutil.rmtree(partial, ignore_errors=True)
+        raise cannot_write(directory, error) from error

@@ -1,0 +1,23 @@
+"""The conformance kit: whether a plug-in keeps its contract, in a test file of three lines.
+
+>>> from mpmkit.testing import law_tests
+>>> from mpmkit_casson import Casson
+>>> test_casson = law_tests(Casson(yield_stress=20, casson_viscosity=0.8), flow_curve=…)
+
+Under pytest each property is then a test of its own; without it, ``for check in law_checks(law): check()``.
+"""
+
+from .checks import Check, law_checks, order_checks, shape_checks
+from .pytest_tests import law_tests, order_tests, shape_tests
+from .violation import Violation
+
+__all__ = [
+    "Check",
+    "Violation",
+    "law_checks",
+    "law_tests",
+    "order_checks",
+    "order_tests",
+    "shape_checks",
+    "shape_tests",
+]

@@ -1,0 +1,127 @@
+"""The checks of each kind of plug-in, gathered, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
+from ..errors import GuardStop
+from . import elastic, flight, law_promises, laws, radial, shapes
+from .descriptor import descriptor, registered
+from .law_subject import Curve, LawSubject
+from .scenes import SPACES
+from .specimens import DENSITY, SOUND_SPEED
+from .violation import Violation
+
+ON_LAWS = (
+    laws.resists_shear,
+    laws.dissipation,
+    laws.objectivity,
+    laws.turning,
+    laws.rest,
+    laws.extreme_rates,
+    laws.batch_order,
+    laws.swelling,
+    law_promises.declared_state,
+    law_promises.leaves_the_motion_alone,
+    law_promises.wave_speed,
+    law_promises.largest_viscosity,
+    law_promises.remarks,
+)
+ON_HYPERELASTIC_LAWS = (
+    elastic.energy_gives_the_stress,
+    elastic.turned_bodies_hold_no_stress,
+    elastic.frame_indifference,
+)
+ON_SHAPES = (
+    shapes.partition_of_unity,
+    shapes.linear_reproduction,
+    shapes.gradients,
+    shapes.nodes_within_reach,
+    shapes.continuity,
+    shapes.place_in_the_lattice,
+    shapes.mirror,
+    shapes.batch_order,
+    radial.radial_partition_of_unity,
+    radial.radial_expansion,
+    radial.far_from_the_axis,
+)
+ON_ORDERS = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.energy)
+
+
+@dataclass(frozen=True)
+class Check:
+    """One property of one plug-in; calling it raises a ``Violation``, one sentence, unless it is there."""
+
+    name: str
+    kind: str
+    plugin: Plugin
+    run: Callable[[], None]
+
+    def __call__(self) -> None:
+        __tracebackhide__ = True  # pytest shows the sentence and not our code
+        try:
+            self.run()
+        except (Violation, GuardStop) as fault:
+            raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
+
+
+def law_checks(
+    law: ConstitutiveLaw,
+    *,
+    flow_curve: Curve | None = None,
+    strain: float = 2.0,
+    rel: float | None = None,
+    density: float = DENSITY,
+    sound_speed: float = SOUND_SPEED,
+) -> list[Check]:
+    """What every law must do; see ``law_tests`` for the arguments."""
+    subject = LawSubject(law, flow_curve, strain, rel, density, sound_speed)
+    chosen: tuple[Callable[[LawSubject], None], ...] = ON_LAWS
+    if subject.curve is not None:
+        chosen = (laws.flow_curve, *chosen)
+    if subject.hyperelastic:
+        chosen += ON_HYPERELASTIC_LAWS
+    return _of("law", law, [(check.__name__, partial(check, subject)) for check in chosen])
+
+
+def shape_checks(shape: ShapeFunction) -> list[Check]:
+    """What every shape function must be."""
+    chosen = (*ON_SHAPES, shapes.barely_touched_nodes) if shape.smooth else ON_SHAPES
+    return _of("shape", shape, [(check.__name__, partial(check, shape)) for check in chosen])
+
+
+def order_checks(order: UpdateOrder) -> list[Check]:
+    """What every update order must do, in each space, with the default shape function and undamped FLIP."""
+    scheme = {"order": order, "velocity": _Undamped()}
+    return _of(
+        "order",
+        order,
+        [
+            (f"{check.__name__} {space}", partial(check, space, scheme))
+            for check in ON_ORDERS
+            for space in SPACES
+        ],
+    )
+
+
+def _of(kind: str, plugin: Plugin, runs: Iterable[tuple[str, Callable[[], None]]]) -> list[Check]:
+    said: list[tuple[str, Callable[[], Any]]] = [
+        ("descriptor", partial(descriptor, kind, plugin)),
+        ("registered", partial(registered, kind, plugin)),
+    ]
+    return [Check(name.replace("_", " "), kind, plugin, run) for name, run in [*said, *runs]]
+
+
+class _Undamped(VelocityUpdate):
+    """v ← v + Δṽ: keeps the energy that an order feeds in or takes out, for all to see."""
+
+    name = "undamped"
+    citation = "Brackbill & Ruppel, J. Comput. Phys. 65 (1986) 314-343"
+    api_version = 1
+
+    def map_to_particles(self, ops: Operations, dt: float) -> None:
+        ops.advance(dt, flip=1.0)

@@ -1,0 +1,76 @@
+"""The checks as tests of pytest, which is imported by those alone who ask for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..contracts import ConstitutiveLaw, ShapeFunction, UpdateOrder
+from .checks import Check, law_checks, order_checks, shape_checks
+from .law_subject import Curve
+from .specimens import DENSITY, SOUND_SPEED
+
+Test = Callable[..., None]
+
+
+def law_tests(
+    law: ConstitutiveLaw,
+    *,
+    flow_curve: Curve | None = None,
+    strain: float = 2.0,
+    rel: float | None = None,
+    density: float = DENSITY,
+    sound_speed: float = SOUND_SPEED,
+) -> Test:
+    """A test function, to be given a name that begins with ``test``, which has a case for every check.
+
+    Simple shear on every plane and against the flow curve, dissipation, objectivity, no stress at rest,
+    independence of the other particles, and whether it does as it says: state, wave speed, viscosity.
+
+    Args:
+        law: with parameters.
+        flow_curve: shear stress, Pa, of steady shear at rates ``(n,)``, 1/s, written anew and not taken from
+            the law. Unless given, that of a law which is made of one, or none.
+        strain: shear strain after which the stress is steady.
+        rel: relative error of the stress that is allowed. Unless given 1e-6, or 1e-3 for a law that
+            remembers: its spring, turned by the shear, takes (tau/G)² of the stress.
+        density: kg/m³.
+        sound_speed: m/s, for a law that uses an equation of state.
+    """
+    return _tests(
+        law_checks(
+            law,
+            flow_curve=flow_curve,
+            strain=strain,
+            rel=rel,
+            density=density,
+            sound_speed=sound_speed,
+        )
+    )
+
+
+def shape_tests(shape: ShapeFunction) -> Test:
+    """A test function, as that of ``law_tests``, for a shape function.
+
+    Partition of unity, linear reproduction, gradients that are derivatives, continuity, the nodes that it may
+    touch, mirror images, and the radial tables of axisymmetric scenes.
+    """
+    return _tests(shape_checks(shape))
+
+
+def order_tests(order: UpdateOrder) -> Test:
+    """A test function, as that of ``law_tests``, for an update order.
+
+    Free flight, mass, momentum, and energy that is stored and given back but not made, in every space.
+    """
+    return _tests(order_checks(order))
+
+
+def _tests(checks: list[Check]) -> Test:
+    import pytest
+
+    @pytest.mark.parametrize("check", checks, ids=[check.name for check in checks])
+    def test(check: Check) -> None:
+        __tracebackhide__ = True
+        check()
+
+    return test

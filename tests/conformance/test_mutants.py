@@ -1,0 +1,163 @@
+"""The conformance kit catches faults: every mutant of a plug-in fails the check that is there for it."""
+
+from __future__ import annotations
+
+import law_mutants
+import numpy as np
+import order_mutants
+import pytest
+import shape_mutants
+from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
+
+from mpmkit.testing import Violation, law_checks, law_tests, order_checks, shape_checks
+
+# --- Laws ---------------------------------------------------------------------------------------------------
+
+CURVES = {Oil: lambda rate: 5.0 * rate, Plastic: lambda rate: 20.0 + 5.0 * rate}
+LAW_MUTANTS = [
+    (law_mutants.NormalComponentsOnly, "resists shear"),
+    (law_mutants.TwiceTheStress, "flow curve"),
+    (law_mutants.TwiceTheFlow, "flow curve"),
+    (law_mutants.FlowCurveOff, "flow curve"),
+    (law_mutants.WrongSign, "dissipation"),
+    (law_mutants.WrongSign, "resists shear"),
+    (law_mutants.WrongSignOfOneShear, "resists shear"),
+    (law_mutants.WrongSignOfOneShear, "objectivity"),
+    (law_mutants.GradientNotTransposed, "resists shear"),
+    (law_mutants.ShearStressesInAnotherOrder, "resists shear"),
+    (law_mutants.TurnNotTransposed, "turning"),
+    (law_mutants.TurnedBackwards, "turning"),
+    (law_mutants.NotTurned, "turning"),
+    (law_mutants.WholeTensor, "swelling"),
+    (law_mutants.SlowWave, "wave speed"),
+    (law_mutants.NoWaveSpeed, "wave speed"),
+    (law_mutants.ThinnerThanItIs, "largest viscosity"),
+    (law_mutants.EnergyOfNothing, "dissipation"),
+    (law_mutants.NothingAtRest, "rest"),
+    (law_mutants.Overflows, "extreme rates"),
+    (law_mutants.KnowsTheOthers, "batch order"),
+    (law_mutants.HiddenState, "declared state"),
+    (law_mutants.UndeclaredState, "declared state"),
+    (law_mutants.ChangesTheMotion, "leaves the motion alone"),
+    (law_mutants.RightForLeft, "energy gives the stress"),
+    (law_mutants.RightForLeft, "frame indifference"),
+    (law_mutants.HalfTheEnergy, "energy gives the stress"),
+    (law_mutants.RemarkOfNobody, "remarks"),
+    (law_mutants.NoCitation, "descriptor"),
+    (Oil, "registered"),
+]
+
+
+def checks_on(law):
+    curve = CURVES[Plastic] if isinstance(law, Plastic | law_mutants.FlowCurveOff) else None
+    curve = CURVES[Oil] if isinstance(law, Oil) else curve
+    return {check.name: check for check in law_checks(law, flow_curve=curve)}
+
+
+@pytest.mark.parametrize("law", [Oil, Plastic, Spring, Ageing, NeoHooke])
+def test_a_sound_law_passes(law):
+    checks = checks_on(law())
+    assert len(checks) >= 15
+    for name, check in checks.items():
+        if name != "registered":
+            check()
+
+
+@pytest.mark.parametrize(("law", "name"), LAW_MUTANTS)
+def test_a_mutant_of_a_law_fails(law, name):
+    with pytest.raises(Violation, match=r"^law 'mutant': ") as caught:
+        checks_on(law())[name]()
+    assert "\n" not in str(caught.value)
+
+
+# --- Shape functions ----------------------------------------------------------------------------------------
+
+SHAPE_MUTANTS = [
+    (shape_mutants.GradientOffByACell, "gradients"),
+    (shape_mutants.GradientOffByACell, "linear reproduction"),
+    (shape_mutants.BaseOffByACell, "linear reproduction"),
+    (shape_mutants.TwiceTheGradient, "gradients"),
+    (shape_mutants.TwiceTheGradient, "radial expansion"),
+    (shape_mutants.GradientPerCell, "gradients"),
+    (shape_mutants.WeightsSwapped, "linear reproduction"),
+    (shape_mutants.WeightsSwapped, "gradients"),
+    (shape_mutants.TooLight, "partition of unity"),
+    (shape_mutants.TooLight, "radial partition of unity"),
+    (shape_mutants.NearestNode, "continuity"),
+    (shape_mutants.NearestNode, "gradients"),
+    (shape_mutants.SaysItIsSmooth, "continuity"),
+    (shape_mutants.FirstAxisOnly, "partition of unity"),
+    (shape_mutants.TooFar, "nodes within reach"),
+    (shape_mutants.LocalLattice, "batch order"),
+    (shape_mutants.LocalLattice, "place in the lattice"),
+    (shape_mutants.NoHoop, "radial expansion"),
+    (shape_mutants.HoopOfTheCell, "radial expansion"),
+    (shape_mutants.HoopOfTheCell, "far from the axis"),
+    (shape_mutants.RadialTablesOfNobody, "radial partition of unity"),
+    (shape_mutants.WeightByDifference, "barely touched nodes"),
+    (shape_mutants.Lopsided, "mirror"),
+    (shape_mutants.UnknownDomain, "nodes within reach"),
+]
+
+
+@pytest.mark.parametrize("shape", [shape_mutants.Hats, shape_mutants.Splines])
+def test_a_sound_shape_passes(shape):
+    for check in shape_checks(shape()):
+        if check.name != "registered":
+            check()
+
+
+@pytest.mark.parametrize(("shape", "name"), SHAPE_MUTANTS)
+def test_a_mutant_of_a_shape_fails(shape, name):
+    checks = {check.name: check for check in shape_checks(shape())}
+    with pytest.raises(Violation, match=r"^shape 'mutant': ") as caught:
+        checks[name]()
+    assert "\n" not in str(caught.value)
+
+
+# --- Orders -------------------------------------------------------------------------------------------------
+
+ORDER_MUTANTS = [
+    (order_mutants.StressBackwards, "energy plane-strain"),
+    (order_mutants.TwiceTheStrain, "energy plane-strain"),
+    (order_mutants.NoForces, "free fall plane-strain"),
+    (order_mutants.NoForces, "energy axisymmetric"),
+    (order_mutants.ForcesTwice, "free fall plane-strain"),
+    (order_mutants.ForcesTwice, "energy plane-strain"),
+    (order_mutants.NoMomentumEquation, "free fall axisymmetric"),
+    (order_mutants.NeverStrains, "momentum plane-strain"),
+    (order_mutants.NeverStrains, "energy plane-strain"),
+    (order_mutants.NeverMoves, "uniform motion plane-strain"),
+    (order_mutants.NeverMoves, "uniform motion 3d"),
+]
+
+
+def test_a_sound_order_passes():
+    for check in order_checks(order_mutants.Modified()):
+        if check.name != "registered":
+            check()
+
+
+@pytest.mark.parametrize(("order", "name"), ORDER_MUTANTS)
+def test_a_mutant_of_an_order_fails(order, name):
+    checks = {check.name: check for check in order_checks(order())}
+    with pytest.raises(Violation, match=r"^order 'mutant': ") as caught, np.errstate(all="ignore"):
+        checks[name]()
+    assert "\n" not in str(caught.value)
+
+
+# --- What is said -------------------------------------------------------------------------------------------
+
+
+def test_the_sentence_says_what_where_and_by_how_much():
+    with pytest.raises(Violation) as caught:
+        checks_on(law_mutants.TwiceTheStress())["flow curve"]()
+    assert str(caught.value) == (
+        "law 'mutant': steady shear stress at 5 /s is 50 Pa, not 25: off by 25, 2.5e-05 allowed"
+    )
+
+
+def test_each_property_is_a_test_of_its_own():
+    (mark,) = law_tests(Oil(), flow_curve=CURVES[Oil]).pytestmark
+    assert mark.name == "parametrize"
+    assert len(mark.args[1]) == len(checks_on(Oil()))

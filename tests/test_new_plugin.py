@@ -1,0 +1,124 @@
+"""``mpmkit new-plugin``: what it writes passes its own tests as it is; a refusal leaves nothing behind."""
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from mpmkit.cli import main
+from mpmkit.scaffold import KINDS
+
+ROOT = Path(__file__).parents[1]
+FILES = {"README.md", "case.json", "pyproject.toml", "src/mpmkit_my_own.py", "tests/test_my_own.py"}
+
+
+def new_plugin(*arguments):
+    with pytest.raises(SystemExit) as stop:
+        main(["new-plugin", *map(str, arguments)])
+    return stop.value.code
+
+
+def files_in(directory):
+    return {str(path.relative_to(directory)) for path in directory.rglob("*") if path.is_file()}
+
+
+def installed_beside(distribution: Path, place: Path) -> dict[str, str]:
+    """An environment in which it is found, as an installer would have it, without asking one."""
+    project = tomllib.loads((distribution / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    info = place / f"{project['name'].replace('-', '_')}-{project['version']}.dist-info"
+    info.mkdir(parents=True)
+    metadata = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+    (info / "METADATA").write_text(metadata, encoding="utf-8")
+    points = [f"{name} = {module}" for name, module in project["entry-points"]["mpmkit"].items()]
+    (info / "entry_points.txt").write_text("\n".join(["[mpmkit]", *points]), encoding="utf-8")
+    before = os.environ.get("PYTHONPATH", "")
+    paths = [str(place), str(distribution / "src"), str(ROOT), str(ROOT / "plugins"), before]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "NUMBA_NUM_THREADS": "1"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_written_passes_its_own_tests(kind, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert new_plugin("my-own", "--kind", kind) == 0
+    assert "mpmkit-my-own" in capsys.readouterr().out
+    distribution = tmp_path / "mpmkit-my-own"
+    assert files_in(distribution) == FILES
+    assert os.listdir(tmp_path) == ["mpmkit-my-own"]
+    assert not any("$" in (distribution / name).read_text(encoding="utf-8") for name in FILES)
+
+    environment = installed_beside(distribution, tmp_path / "site")
+    command = [sys.executable, "-W", "error::RuntimeWarning", "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    done = subprocess.run(command, cwd=distribution, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "failed" not in done.stdout
+    assert int(done.stdout.rsplit(" passed", 1)[0].split()[-1]) >= 14  # the kit's, and the case
+
+
+def test_the_distribution_may_be_named_in_full(tmp_path):
+    assert new_plugin("mpmkit-my-own", "--kind", "law", "--out", tmp_path / "a" / "b") == 0
+    assert files_in(tmp_path / "a" / "b") == FILES
+    case = json.loads((tmp_path / "a" / "b" / "case.json").read_text(encoding="utf-8"))
+    assert case["bodies"][0]["material"]["law"] == "my-own"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["My-Own", "2phase", "my_own", "my--own", "my-", "mpmkit-", "", "true", "none", "λ", "../up", "x" * 51],
+)
+def test_a_bad_name_is_refused(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert new_plugin("--kind", "law", "--", name) == 2
+    said = capsys.readouterr().err
+    assert f"'{name}'" in said
+    assert "lower-case letters, digits" in said
+    assert said.count("\n") == 1
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "reason"),
+    [
+        ("bingham", "law", "of mpmkit"),
+        ("usl", "order", "of mpmkit"),
+        ("plugins", "law", "module mpmkit_plugins"),
+    ],
+)
+def test_a_name_that_is_taken_is_refused(name, kind, reason, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert new_plugin(name, "--kind", kind) == 2
+    said = capsys.readouterr().err
+    assert reason in said
+    assert "choose another name" in said
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("what", ["directory", "file", "dangling link"])
+def test_what_exists_is_left_alone(what, tmp_path, capsys):
+    out = tmp_path / "taken"
+    if what == "directory":
+        out.mkdir()
+    elif what == "file":
+        out.write_text("mine", encoding="utf-8")
+    else:
+        out.symlink_to(tmp_path / "nowhere")
+    assert new_plugin("my-own", "--kind", "shape", "--out", out) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert os.listdir(tmp_path) == ["taken"]
+    assert what != "directory" or os.listdir(out) == []
+
+
+def test_an_unknown_kind_is_refused(tmp_path, capsys):
+    assert new_plugin("my-own", "--kind", "pump", "--out", tmp_path / "new") == 2
+    assert "'law', 'shape', 'order'" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
+def test_where_nothing_can_be_written(tmp_path, capsys):
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    assert new_plugin("my-own", "--kind", "law", "--out", tmp_path / "file" / "new") == 4
+    assert "cannot write" in capsys.readouterr().err
+    assert os.listdir(tmp_path) == ["file"]
