@@ -121,16 +121,16 @@ def test_a_node_that_is_barely_touched_has_weight_and_gradient_small_alike(shape
 
     A weight that rounding makes zero, beside a gradient that is not, is force on a node without mass.
     """
-    dx, w, node = 0.01, 0.5, 1 if side < 0 else 2
-    x = (node - side * w / 2) * dx + side * np.arange(1, 400) * np.spacing(dx)
-    half_size = np.full_like(x, w / 2 * dx)
-    base, weight, gradient = tables(shape, x[:, None], half_size[:, None], dx)
+    w, node = 0.5, 1 if side < 0 else 2
+    x = (node - side * w / 2) * DX + side * np.arange(1, 400) * np.spacing(DX)
+    half_size = np.full_like(x, w / 2 * DX)
+    base, weight, gradient = tables(shape, x[:, None], half_size[:, None])
     over, touched = base[:, 0] == node - 1, 0 if side < 0 else 2
-    weight, slope = weight[over, 0, touched], gradient[over, 0, touched] * dx
+    weight, slope = weight[over, 0, touched], gradient[over, 0, touched] * DX
     assert over.sum() > 390
     np.testing.assert_allclose(weight, w / 2 * slope**2, rtol=1e-6)
-    _, weight, gradient, hoop = radial_tables(shape, x, half_size, dx)
-    weight, slope, hoop = weight[over, touched], gradient[over, touched] * dx, hoop[over, touched] * dx
+    _, weight, gradient, hoop = radial_tables(shape, x, half_size)
+    weight, slope, hoop = weight[over, touched], gradient[over, touched] * DX, hoop[over, touched] * DX
     mean_radius = node - side * w / 2  # in cells; with r in the integrals, both numbers are node over it
     np.testing.assert_allclose(weight, w / 2 * slope**2 * mean_radius / node, rtol=1e-6)
     np.testing.assert_allclose(hoop * node, weight, rtol=1e-6)
