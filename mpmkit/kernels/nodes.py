@@ -22,9 +22,11 @@ import math
 import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, function, kernel
+from .compile import CHUNK, chunk_count, function, inline, kernel
 from .scatter import CONTACT, NODE
 
+FEW = 1000
+"""Nodes of a face below which more threads than one are not worth their start."""
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
 
 
@@ -38,24 +40,34 @@ def clear(nodes, rows, tasks):
                     nodes[i, q] = 0.0
 
 
-@kernel()
-def _transfer(nodes, mirrors, contact, first, last, sign, folding):
-    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
+@inline()
+def _move(nodes, mirror, contact, first, last, sign, folding):
+    """Slots first..last-1 of a ghost, times ``sign``, onto its image; or back, if not ``folding``.
 
-    With ``contact``, the bit of an axis, only behind those nodes that touch the wall along it.
+    With ``contact``, the bit of an axis, only if the node between them touches the wall along it.
     """
+    ghost, image, wall = mirror
+    if not contact or int(nodes[wall, CONTACT]) & contact:
+        for q in range(first, last):
+            if folding:
+                nodes[image, q] += sign[q] * nodes[ghost, q]
+                nodes[ghost, q] = 0.0
+            else:
+                nodes[ghost, q] = sign[q] * nodes[image, q]
+
+
+@function()
+def _move_few(nodes, mirrors, contact, first, last, sign, folding):
+    for k in range(len(mirrors)):
+        _move(nodes, mirrors[k], contact, first, last, sign, folding)
+
+
+@kernel()
+def _move_many(nodes, mirrors, contact, first, last, sign, folding):
     n = len(mirrors)
     for c in prange(chunk_count(n)):
         for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            ghost, image, wall = mirrors[k]
-            if contact and not int(nodes[wall, CONTACT]) & contact:
-                continue
-            for q in range(first, last):
-                if folding:
-                    nodes[image, q] += sign[q] * nodes[ghost, q]
-                    nodes[ghost, q] = 0.0
-                else:
-                    nodes[ghost, q] = sign[q] * nodes[image, q]
+            _move(nodes, mirrors[k], contact, first, last, sign, folding)
 
 
 @function()
@@ -78,8 +90,11 @@ def _reflect(nodes, faces, mirrors, face_first, first, last, vectors, folding):
             face, f = faces[a, side], 2 * a + side
             if face_first[f] < face_first[f + 1]:
                 contact = 1 << a if face == FRICTION and vectors else 0
-                of_face = mirrors[face_first[f] : face_first[f + 1]]
-                _transfer(nodes, of_face, contact, first, last, _parity(face, a, dim, vectors), folding)
+                of_face, sign = mirrors[face_first[f] : face_first[f + 1]], _parity(face, a, dim, vectors)
+                if len(of_face) < FEW:
+                    _move_few(nodes, of_face, contact, first, last, sign, folding)
+                else:
+                    _move_many(nodes, of_face, contact, first, last, sign, folding)
 
 
 @function()
@@ -108,21 +123,19 @@ def _constrain(nodes, faces, mirrors, face_first, friction, solved):
                 _hold(nodes, len(faces), of_face, face, a, 1 - 2 * side, friction[a, side], solved)
 
 
-@kernel()
+@function()
 def _hold(nodes, dim, mirrors, face, a, inward, coefficient, solved):
     """The condition of one face on the nodes in its plane."""
-    n = len(mirrors)
-    for c in prange(chunk_count(n)):
-        for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            node = nodes[mirrors[k, 2]]
-            if face == FRICTION:
-                _touch(node, dim, a, inward, coefficient, solved)
-                continue
-            for d in range(dim):
-                if d == a or face == STICK:
-                    node[1 + d] = 0.0
-                    if solved:
-                        node[1 + dim + d] = 0.0
+    for k in range(len(mirrors)):
+        node = nodes[mirrors[k, 2]]
+        if face == FRICTION:
+            _touch(node, dim, a, inward, coefficient, solved)
+            continue
+        for d in range(dim):
+            if d == a or face == STICK:
+                node[1 + d] = 0.0
+                if solved:
+                    node[1 + dim + d] = 0.0
 
 
 @function()
