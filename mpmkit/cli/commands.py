@@ -12,7 +12,7 @@ import click
 
 from .. import __version__
 from ..errors import MpmkitError, OutputError
-from . import bench, chart, compare, plan, plugins, run, schema, stability, study
+from . import bench, chart, compare, options, plan, plugins, run, schema, stability, study
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
@@ -29,6 +29,8 @@ def commands(context: click.Context) -> None:
 
 for module in (run, plan, compare, study, chart, stability, bench, plugins, schema):
     commands.add_command(module.command)
+for command in (commands, *commands.commands.values()):
+    command.params.append(options.no_plugins)
 
 
 def execute(arguments: Sequence[str] | None) -> int:

@@ -8,9 +8,11 @@ import numpy as np
 
 from ..case.model import Scheme
 from ..contracts.operations import Measure
+from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather, gather_scalar
 from ..kernels.scatter import scatter, scatter_pairs
+from . import audit
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Group, Particles
@@ -39,6 +41,7 @@ class SceneOperations:
         self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
         self._gather, self._gather_scalar = gather(dim, support), gather_scalar(dim, support)
         self._gradient_due = False
+        self._begun = 0
         self.allocate()
 
     def allocate(self) -> None:
@@ -60,6 +63,8 @@ class SceneOperations:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
         lost = self._sort()
         if lost is None:
+            self._rehearsing = self._begun % audit.INTERVAL == 0
+            self._begun += 1
             self._evaluate_shapes()
         return lost
 
@@ -68,6 +73,8 @@ class SceneOperations:
 
     def _evaluate_shapes(self) -> None:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
+        if self._rehearsing:
+            audit.rehearse_shape(shape, p.position, p.half_size, dx, self.radial)
         shape.fill(p.position, p.half_size, dx, self.base, self.weight, self.gradient)
         if self.radial:
             base, weight, gradient = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
@@ -116,6 +123,11 @@ class SceneOperations:
 
     # --- Nodes
 
+    @property
+    def mapped_mass(self) -> float | None:
+        """Mass that the nodes got in the last step, kg; None where there was none since they were made."""
+        return float(self.window.nodes[:, 0].sum()) if self.layout.sorts else None
+
     def solve_momentum(self, dt: float) -> None:
         nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
 
@@ -128,6 +140,8 @@ class SceneOperations:
             self.update_velocity_gradient()
 
     def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+        if not math.isfinite(flip):
+            raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 
@@ -159,8 +173,12 @@ class SceneOperations:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
-        p = self.particles
-        group.law.update_stress(p.motion(group), group.state, dt, p.stress[group.part])
+        p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
+        if self._rehearsing:
+            audit.rehearse_law(p, group, dt)
+        group.law.update_stress(motion, group.state, dt, stress)
+        given = (motion.velocity_gradient, motion.volume_ratio, motion.pressure)
+        audit.require_finite(group.law, "a stress", stress, p.number[group.part], given)
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
@@ -171,11 +189,19 @@ class SceneOperations:
         for group in p.groups:
             part = group.part
             if group.law.uses_equation_of_state:
-                p.pressure[part] = group.pressure(p.volume_ratio[part])
+                p.pressure[part] = self._pressure(group, p.volume_ratio[part])
             elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
+
+    def _pressure(self, group: Group, volume_ratio: np.ndarray) -> np.ndarray:
+        pressure, author = group.pressure(volume_ratio), group.equation_of_state
+        audit.require_shape(author, "pressure", pressure, volume_ratio.shape)
+        audit.require_finite(
+            author, "a pressure", pressure, self.particles.number[group.part], [volume_ratio]
+        )
+        return pressure
 
     def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
@@ -190,8 +216,10 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        treated = self.scheme.volumetric.average(self, field)
+        treated, author = self.scheme.volumetric.average(self, field), self.scheme.volumetric
         if treated is not field:
+            audit.require_shape(author, "average", treated, field.shape)
+            audit.require_finite(author, "an average", treated, self.particles.number, [field])
             for group in self.particles.groups:
                 if not group.law.uses_equation_of_state:
                     treated[group.part] = field[group.part]
@@ -207,6 +235,10 @@ class SceneOperations:
         rate = self.scheme.volumetric.relaxation_rate(self)
         if rate == 0.0:
             return
+        if not rate >= 0:
+            raise PluginFault(
+                self.scheme.volumetric, f"has a relaxation rate of {rate} /s; it must be positive"
+            )
         p = self.particles
         for group in p.groups:
             if group.law.uses_equation_of_state:

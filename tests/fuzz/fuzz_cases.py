@@ -10,7 +10,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from mpmkit.case import case_schema
+from mpmkit.case import case_schema, parse_case
 from mpmkit.registry import installed
 from mpmkit.spaces import SPACES
 
@@ -70,9 +70,7 @@ def parameters(draw: st.DrawFn, node: dict[str, Any], but: tuple[str, ...] = ())
 def plugins(kind: str) -> st.SearchStrategy[Any]:
     """A registered scheme, by its name or with parameters."""
     options = SCHEMA["$defs"]["Scheme"]["properties"][kind]
-    return st.one_of(
-        [value_of(option) for entry in options["oneOf"] for option in resolve(entry)["anyOf"]]
-    )
+    return st.one_of([value_of(option) for entry in options["oneOf"] for option in resolve(entry)["anyOf"]])
 
 
 @st.composite
@@ -115,13 +113,16 @@ def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
         bodies.append({"shape": draw(_shapes(space, begin, size, cell)), "material": material})
         if draw(st.booleans()):
             bodies[-1]["velocity"] = [
-                0.0 if radial and a == 0 else draw(st.sampled_from([-1.0, 0.0, 0.25])) for a in range(len(axes))
+                0.0 if radial and a == 0 else draw(st.sampled_from([-1.0, 0.0, 0.25]))
+                for a in range(len(axes))
             ]
         if draw(st.booleans()):
             bodies[-1]["particles_per_cell"] = draw(
                 st.sampled_from([1, 2 ** len(axes), [2] * len(axes), [1, 2, 3][: len(axes)]])
             )
-    scheme = {k: draw(plugins(k)) for k in ("shape", "order", "velocity", "volumetric") if draw(st.booleans())}
+    scheme = {
+        k: draw(plugins(k)) for k in ("shape", "order", "velocity", "volumetric") if draw(st.booleans())
+    }
     if draw(st.booleans()):
         scheme["splitting"] = draw(st.booleans())
     if draw(st.booleans()):
@@ -144,7 +145,27 @@ def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
         case["gravity"] = [0.0] * len(axes)
     if draw(st.booleans()):
         case["output"]["particle_history"] = ["position", "stress"]
+    _slower_than_sound(case, cell * sum(size))
     return case
+
+
+def _slower_than_sound(case: dict[str, Any], height: float) -> None:
+    """Nothing is meant to fly faster than its waves: gravity and speeds are made to fit the softest material.
+
+    Where the sound speed is given by a fall, it fits gravity by itself.
+    """
+    own = [
+        body.material.constitutive_law.wave_speed(body.material.density, body.material.sound_speed)
+        for body in parse_case(case).bodies
+        if isinstance(body.material.sound_speed, float | None)
+    ]
+    slowest = min(own, default=math.inf)
+    if "gravity" not in case and slowest < math.inf:
+        case["gravity"] = [0.0] * len(case["grid"]["domain"])
+        case["gravity"][-1] = -min(9.81, (slowest / 3) ** 2 / (2 * height))
+    for body in case["bodies"]:
+        if "velocity" in body:
+            body["velocity"] = [x * min(1.0, slowest / 3) for x in body["velocity"]]
 
 
 @st.composite
@@ -197,8 +218,29 @@ PAYLOADS = [
     "￾\u202e",
 ]
 """Texts that would do something if anything took them for more than text."""
-TRICKS = ["..", ".", "../up", "/tmp/up", "a/b", "a\\b", "~", "~root", "a\x00", "a\n", "", " ", "-rf", "x" * 5000]
+TRICKS = [
+    "..",
+    ".",
+    "../up",
+    "/tmp/up",
+    "a/b",
+    "a\\b",
+    "~",
+    "~root",
+    "a\x00",
+    "a\n",
+    "",
+    " ",
+    "-rf",
+    "x" * 5000,
+]
 """Names of a run directory that would lead out of it."""
+
+
+NEEDED = [
+    ("space",), ("until",), ("grid",), ("bodies",), ("grid", "cell_size"), ("grid", "domain"),
+    ("bodies", 0, "shape"), ("bodies", 0, "material"), ("bodies", 0, "material", "density"),
+]  # fmt: skip
 
 
 def junk() -> st.SearchStrategy[Any]:
@@ -217,7 +259,9 @@ def junk() -> st.SearchStrategy[Any]:
     return st.one_of(
         st.recursive(
             scalars,
-            lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+            lambda inner: (
+                st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4)
+            ),
             max_leaves=8,
         ),
         nested,
@@ -240,9 +284,9 @@ def parent(data: Any, path: tuple) -> Any:
 
 
 @st.composite
-def mutants(draw: st.DrawFn, cases: st.SearchStrategy = valid_cases()) -> dict[str, Any]:
+def mutants(draw: st.DrawFn) -> dict[str, Any]:
     """A valid case with one to three of its entries replaced, removed or added; some are still valid."""
-    data = copy.deepcopy(draw(cases))
+    data = copy.deepcopy(draw(valid_cases()))
     for _ in range(draw(st.integers(1, 3))):
         here = sorted(places(data), key=str)
         if not here:
@@ -254,7 +298,9 @@ def mutants(draw: st.DrawFn, cases: st.SearchStrategy = valid_cases()) -> dict[s
                 holder[path[-1]] = draw(junk())
             case "scale":
                 if isinstance(holder[path[-1]], float | int):
-                    holder[path[-1]] *= draw(st.sampled_from([-1, 0, 1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12, 1e200]))
+                    holder[path[-1]] *= draw(
+                        st.sampled_from([-1, 0, 1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12, 1e200])
+                    )
             case "remove":
                 del holder[path[-1]]
             case _ if isinstance(holder, dict):
@@ -268,7 +314,9 @@ def mutants(draw: st.DrawFn, cases: st.SearchStrategy = valid_cases()) -> dict[s
 def invalid_cases(draw: st.DrawFn) -> dict[str, Any]:
     """A valid case with one thing in it that no case may have, wherever that is."""
     data = copy.deepcopy(draw(valid_cases()))
-    what = draw(st.sampled_from(["unknown key", "wrong type", "missing", "not above zero", "too many", "name"]))
+    what = draw(
+        st.sampled_from(["unknown key", "wrong type", "missing", "not above zero", "too many", "name"])
+    )
     if what == "unknown key":
         objects = [()] + [path for path in places(data) if isinstance(_at(data, path), dict)]
         _at(data, draw(st.sampled_from(sorted(objects, key=str))))["no such key"] = draw(junk())
@@ -277,16 +325,15 @@ def invalid_cases(draw: st.DrawFn) -> dict[str, Any]:
         key = draw(st.sampled_from(sorted(wrong)))
         data[key] = wrong[key]
     elif what == "missing":
-        path = draw(
-            st.sampled_from(
-                [("space",), ("until",), ("grid",), ("bodies",), ("grid", "cell_size"), ("grid", "domain")]
-                + [("bodies", 0, "shape"), ("bodies", 0, "material"), ("bodies", 0, "material", "density")]
-            )
-        )
+        path = draw(st.sampled_from(NEEDED))
         del parent(data, path)[path[-1]]
     elif what == "not above zero":
-        path = draw(st.sampled_from([("until",), ("grid", "cell_size"), ("bodies", 0, "material", "density")]))
-        parent(data, path)[path[-1]] = draw(st.one_of(st.just(0.0), st.floats(max_value=0, allow_infinity=False)))
+        path = draw(
+            st.sampled_from([("until",), ("grid", "cell_size"), ("bodies", 0, "material", "density")])
+        )
+        parent(data, path)[path[-1]] = draw(
+            st.one_of(st.just(0.0), st.floats(max_value=0, allow_infinity=False))
+        )
     elif what == "too many":  # a billion particles and more
         data["bodies"][0]["particles_per_cell"] = 1000
         data["grid"]["cell_size"] /= 1000 if len(data["grid"]["domain"]) == 3 else 1_000_000
@@ -319,7 +366,9 @@ def broken_texts(draw: st.DrawFn) -> bytes:
                     st.sampled_from([10, 990, 1_000, 100_000])
                 )
             case "number":
-                digits = draw(st.sampled_from([b"1e999", b"NaN", b"-Infinity", b"9" * 5_000, b"1e-999", b"0x10"]))
+                digits = draw(
+                    st.sampled_from([b"1e999", b"NaN", b"-Infinity", b"9" * 5_000, b"1e-999", b"0x10"])
+                )
                 text = text.replace(b"0", digits, 1) if b"0" in text else digits
             case _:
                 text = text.replace(b'"', b'"' + draw(st.text(max_size=5)).encode(), 1)

@@ -19,7 +19,7 @@ from fuzz_cases import PAYLOADS, TRICKS, broken_texts, invalid_cases, junk, muta
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mpmkit.case import parse_case
+from mpmkit.case import load_case, parse_case
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, GuardStop, MpmkitError
 from mpmkit.memory import expected_particles, require_memory
@@ -61,14 +61,17 @@ sys.addaudithook(_watch)
 
 
 @contextmanager
-def nothing_done(inside: Path):
-    """Nothing in the block may write outside a directory, start a process, unpickle or use the network."""
+def nothing_done(inside: Path, but: tuple[str, ...] = ()):
+    """Nothing in the block may write outside a directory, start a process, unpickle or use the network.
+
+    ``but`` is what it may do all the same: a run loads kernels that numba has pickled.
+    """
     watched.update(on=True, done=[], inside=str(inside.resolve()))
     try:
         yield
     finally:
         watched["on"] = False
-    assert watched["done"] == []
+    assert [done for done in watched["done"] if done[0] not in but] == []
 
 
 def command(*arguments: str) -> tuple[int, list[str]]:
@@ -118,34 +121,34 @@ def refused(data: dict, here: Path) -> None:
 
 def survived(data: dict, here: Path) -> None:
     """Refused with one sentence, or good for three steps or a guard's stop; never anything else."""
-    with nothing_done(here):
-        try:
+    try:
+        with nothing_done(here):
             case = parse_case(data)
             require_memory(case)
-            if expected_particles(case) > MOST:
-                return
-            simulation = Simulation(case)
-            for _ in range(3):
+            few = expected_particles(case) < MOST
+        with nothing_done(here, but=("pickle.find_class",)):
+            simulation = Simulation(case) if few else None
+            for _ in range(3 if few else 0):
                 simulation.advance()
-            simulation.check()
-        except (CaseError, GuardStop) as error:
-            assert len(str(error)) < 2000
-    assert not any(here.iterdir())
+    except (CaseError, GuardStop) as error:
+        assert 20 < len(str(error)) < 2000  # noqa: PT017
+        assert "Traceback" not in str(error)  # noqa: PT017
+    assert {path.name for path in here.iterdir()} <= {"case.json"}
 
 
 def text_survived(text: bytes, here: Path) -> None:
     (here / "case.json").write_bytes(text)
     begin = time.monotonic()
+    good = False
     with nothing_done(here):
-        status, lines = command("run", "case.json", "--quiet", "--set", "until=1e-300")
-    if status == 0:  # what was broken was not what matters
-        lines = []
-    else:
-        require_sentence(status, lines)
+        try:
+            load_case("case.json")
+            good = True
+        except CaseError:
+            require_sentence(*command("run", "case.json", "--quiet"))
+    if good:  # what was broken was not what matters
+        survived(json.loads(text), here)
     assert time.monotonic() - begin < SECONDS
-    for path in here.glob("runs/*/**/*"):
-        if path.is_file():
-            path.unlink()
 
 
 # --- A few, always the same
@@ -184,8 +187,8 @@ def test_overrides_are_refused_or_taken(data, path, value):
     try:
         parse_case(data, [f"{path}={text}"])
     except MpmkitError as error:
-        assert error.exit_status == 2
-        assert len(str(error)) < 2000
+        assert error.exit_status == 2  # noqa: PT017
+        assert len(str(error)) < 2000  # noqa: PT017
 
 
 @pytest.mark.parametrize("name", TRICKS)

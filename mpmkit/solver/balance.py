@@ -1,0 +1,72 @@
+"""The energy balance of a scene: what moves and is stored, against what was put in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
+from .grid import Grid
+from .particles import Particles
+
+CREATED = 0.2
+"""Energy from nowhere, over the energy that the scene had to move with, at which it is stopped."""
+
+
+class EnergyBalance:
+    """Keeps account of the energy of a scene.
+
+    Walls are at rest and materials dissipate, so that what moves and is stored can be no more than what did
+    at the start and what gravity has done since,
+
+        created = (K + U) - (K + U)(0) - W <= 0,
+
+    with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
+    particles have come down by, and, along a periodic axis, which has no height, the integral of its power.
+    A sound speed that follows the flow changes U from outside, and so does splitting, which leaves part of
+    the affine velocity to the halves: both are taken as put in.
+    """
+
+    def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray, time: float) -> None:
+        self._downwards = np.where(grid.periodic, 0.0, gravity)
+        self._along = np.where(grid.periodic, gravity, 0.0)
+        self._first = self.held = _held(particles)
+        self._height = potential_energy(particles, self._downwards)
+        self._time, self._power = time, self._power_along(particles)
+        self._put_in = self._most_work = 0.0
+        self.created = 0.0
+        mass = float(np.sum(particles.mass))
+        # What a scene at rest would gain by falling one cell: below it nothing has happened yet.
+        self._least = mass * float(np.linalg.norm(gravity)) * grid.cell_size
+
+    def update(self, p: Particles, time: float) -> None:
+        """Take the energies of the present state."""
+        self.held = _held(p)
+        power = self._power_along(p)
+        self._put_in += (time - self._time) * (power + self._power) / 2
+        self._time, self._power = time, power
+        work = self._height - potential_energy(p, self._downwards) + self._put_in
+        self._most_work = max(self._most_work, abs(work))
+        self.created = self.held - self._first - work
+
+    def accept(self, p: Particles) -> None:
+        """Take what has become of the energy since ``update`` as put in from outside."""
+        held = _held(p)
+        self._put_in += held - self.held
+        self.held = held
+
+    @property
+    def supply(self) -> float:
+        """Energy that the scene had to move with, J: at the start, and from gravity at its most."""
+        return self._first + self._most_work + self._least
+
+    @property
+    def excess(self) -> float:
+        """Energy created, over the supply; zero where nothing could move."""
+        return self.created / self.supply if self.supply > 0 else 0.0
+
+    def _power_along(self, p: Particles) -> float:
+        return float(p.mass @ (p.velocity @ self._along))
+
+
+def _held(p: Particles) -> float:
+    return kinetic_energy(p) + strain_energy(p) + compressive_energy(p)
