@@ -116,7 +116,7 @@ def discover() -> Registry:
 
 
 def _chosen() -> set[str] | None:
-    """Distributions to load, None for all of them; the built-in plug-ins are mpmkit's own, and always there."""
+    """Distributions to load, None for all of them; mpmkit's own is one of them whatever is asked."""
     named = os.environ.get(CHOSEN)
     if named is None:
         return None

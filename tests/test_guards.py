@@ -14,7 +14,6 @@ from mpmkit.solver.balance import CREATED
 from mpmkit.solver.simulation import CONTROL_INTERVAL
 
 FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 1.0, "sound_speed": 10.0}
-SOLID = {"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
 
 
 class Swelling(ConstitutiveLaw):
@@ -125,7 +124,7 @@ def test_volume_ratio_out_of_range(ratio):
 
 def test_energy_from_nowhere():
     """A block at rest without gravity has nothing to move with; this one flies apart all the same."""
-    material = {"law": "swelling", "density": 1000.0, "pressure": 1e3}
+    material = {"law": "swelling", "density": 1000.0, "pressure": 1e2}
     said, where = stopped(scene(material), "energy")
     assert where >= 0
     assert "J have come from nowhere" in said
@@ -141,12 +140,13 @@ def test_a_law_that_does_work_and_says_so_is_let_go():
 
 
 def test_energy_of_a_step_beyond_the_limit():
-    """An elastic block whose particles fly against each other, with three times the critical step."""
-    simulation = scene(SOLID, velocity=(0.5, 0.0), order="musl")
-    simulation.fraction = 3.0
+    """At 0.9 of dx/c, where the scheme bears no more than 0.7, noise grows, all numbers finite and wrong."""
+    simulation = scene(velocity=(0.1, 0.0), order="musl", volumetric="own")
+    simulation.particles.velocity[::3] *= -1
+    simulation.fraction = 0.9
     simulation.choose_time_step()
-    simulation.particles.velocity[::2] *= -1
     said, _ = stopped(simulation, "energy", steps=400)
+    assert "J have come from nowhere: what moves and is stored is " in said
     assert "reduce scheme.time_step.fraction" in said
 
 

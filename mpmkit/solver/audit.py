@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from ..contracts import Plugin, ShapeFunction
+from ..contracts import ConstitutiveLaw, Motion, Plugin, ShapeFunction
 from ..errors import PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_not_finite
-from .particles import Group, Particles
+from .particles import LEAST_RATIO, MOST_RATIO, Group, Particles
 
 INTERVAL = 200
 """Steps between two rehearsals: they then cost less than a hundredth of a run, however few its particles."""
@@ -80,8 +80,7 @@ def rehearse_law(p: Particles, group: Group, dt: float) -> None:
             )
     _require_intact(law, {"stress": stress, **{f"state '{name}'": array for name, array in kept.items()}})
     _require_unchanged(law, given)
-    inputs = (array.rows for array in given.values())
-    require_finite(law, "a stress", stress.rows, p.number[group.part][which], inputs)
+    require_stress(law, rehearsed, dt, stress.rows, p.number[group.part][which])
 
 
 def rehearse_shape(
@@ -123,6 +122,21 @@ def require_shape(plugin: Plugin, what: str, returned: Any, shape: tuple[int, ..
         raise PluginFault(
             plugin, f"returned {_described(returned)} from {what}; it must be an array of shape {shape}"
         )
+
+
+def require_stress(
+    law: ConstitutiveLaw, motion: Motion, dt: float, stress: np.ndarray, numbers: np.ndarray
+) -> None:
+    """Raise PluginFault if a law gave a stress that is not finite, and the run does not diverge as it is.
+
+    It does where a step strains a particle by as much as its size, or its volume is beyond sense.
+    """
+    if _first_not_finite(stress) < 0:
+        return
+    ratio = motion.volume_ratio
+    sound = ratio.min() >= LEAST_RATIO and ratio.max() <= MOST_RATIO
+    if sound and np.abs(motion.velocity_gradient).max() * dt < 1:
+        require_finite(law, "a stress", stress, numbers, (motion.pressure,))
 
 
 def require_finite(

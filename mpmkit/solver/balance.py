@@ -11,6 +11,9 @@ from .particles import Particles
 CREATED = 0.2
 """Energy from nowhere, over the energy that the scene had to move with, at which it is stopped."""
 
+ROUNDING = 1e-9
+"""Energy that is nothing, over that of flying at the speed of the fastest wave."""
+
 
 class EnergyBalance:
     """Keeps account of the energy of a scene.
@@ -35,8 +38,9 @@ class EnergyBalance:
         self._put_in = self._most_work = 0.0
         self.created = 0.0
         mass = float(np.sum(particles.mass))
-        # What a scene at rest would gain by falling one cell: below it nothing has happened yet.
-        self._least = mass * float(np.linalg.norm(gravity)) * grid.cell_size
+        fastest = max(group.wave_speed for group in particles.groups)
+        # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
+        self._least = mass * (float(np.linalg.norm(gravity)) * grid.cell_size + ROUNDING * fastest**2)
 
     def update(self, p: Particles, time: float) -> None:
         """Take the energies of the present state."""
@@ -61,8 +65,8 @@ class EnergyBalance:
 
     @property
     def excess(self) -> float:
-        """Energy created, over the supply; zero where nothing could move."""
-        return self.created / self.supply if self.supply > 0 else 0.0
+        """Energy created, over the supply."""
+        return self.created / self.supply
 
     def _power_along(self, p: Particles) -> float:
         return float(p.mass @ (p.velocity @ self._along))

@@ -10,14 +10,12 @@ from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
 from .balance import CREATED, EnergyBalance
+from .particles import LEAST_RATIO, MOST_RATIO
 from .time_step import warnings
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-LEAST_RATIO, MOST_RATIO = 0.1, 10.0
-"""Volume ratios between which a run is sound. At a Mach number of 0.1 that of a fluid is within a hundredth
-of 1; no law here is meant for a solid that is a tenth, or ten times, as large as it was."""
 COLLAPSED = 1e-4
 """Part of the longest step so far below which it has collapsed: a run that took a minute now takes a week."""
 DRIFT = 1e-9

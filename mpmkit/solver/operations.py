@@ -177,8 +177,7 @@ class SceneOperations:
         if self._rehearsing:
             audit.rehearse_law(p, group, dt)
         group.law.update_stress(motion, group.state, dt, stress)
-        given = (motion.velocity_gradient, motion.volume_ratio, motion.pressure)
-        audit.require_finite(group.law, "a stress", stress, p.number[group.part], given)
+        audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
