@@ -9,7 +9,12 @@ from .grid import Grid
 from .particles import Particles
 
 CREATED = 0.2
-"""Energy from nowhere, over the energy that the scene had to move with, at which it is stopped."""
+"""Energy from nowhere, over the energy that the scene had to move with, that is not taken for long."""
+LOOKS = 10
+"""Looks in a row at which there may be as much."""
+MOST_CREATED = 1.0
+"""What is not taken at all. Of a wave of frequency ω an explicit step conserves (v² + ω²x² - ωΔt v ωx)/2, so
+that K + U goes up to 1/(1 - ωΔt/2) of what it was: twice, for the shortest wave at half the critical step."""
 
 ROUNDING = 1e-9
 """Energy that is nothing, over that of flying at the speed of the fastest wave."""
@@ -37,6 +42,7 @@ class EnergyBalance:
         self._time, self._power = time, self._power_along(particles)
         self._put_in = self._most_work = 0.0
         self.created = 0.0
+        self._looks_too_high = 0
         mass = float(np.sum(particles.mass))
         fastest = max(group.wave_speed for group in particles.groups)
         # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
@@ -51,6 +57,7 @@ class EnergyBalance:
         work = self._height - potential_energy(p, self._downwards) + self._put_in
         self._most_work = max(self._most_work, abs(work))
         self.created = self.held - self._first - work
+        self._looks_too_high = self._looks_too_high + 1 if self.excess > CREATED else 0
 
     def accept(self, p: Particles) -> None:
         """Take what has become of the energy since ``update`` as put in from outside."""
@@ -67,6 +74,11 @@ class EnergyBalance:
     def excess(self) -> float:
         """Energy created, over the supply."""
         return self.created / self.supply
+
+    @property
+    def broken(self) -> bool:
+        """Whether far too much energy was created, or too much for too long."""
+        return self._looks_too_high >= LOOKS or not self.excess <= MOST_CREATED
 
     def _power_along(self, p: Particles) -> float:
         return float(p.mass @ (p.velocity @ self._along))

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
-from .balance import CREATED, EnergyBalance
+from .balance import EnergyBalance
 from .particles import LEAST_RATIO, MOST_RATIO
 from .time_step import warnings
 
@@ -55,7 +55,7 @@ class Guards:
         self._check_mass()
         if self._balance is not None:
             self._balance.update(p, self._simulation.time)
-            if not self._balance.excess <= CREATED:
+            if self._balance.broken:
                 self._stop_of_energy(self._balance)
 
     def accept_changes(self) -> None:
