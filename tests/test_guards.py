@@ -161,11 +161,11 @@ def test_an_oscillation_of_the_energy_is_no_energy_created():
     for _ in range(3):
         simulation.advance()
     simulation.check()
-    assert simulation._guards._balance.excess > CREATED
+    assert simulation.guards.balance.excess > CREATED
     for _ in range(4 * CONTROL_INTERVAL):
         simulation.advance()
     simulation.check()
-    assert simulation._guards._balance.excess < 0
+    assert simulation.guards.balance.excess < 0
 
 
 def test_a_law_that_does_work_and_says_so_is_let_go():
@@ -195,7 +195,7 @@ def test_work_of_gravity_is_no_energy_from_nowhere(gravity, faces):
     while simulation.time < 0.2:
         simulation.advance()
     simulation.check()
-    balance = simulation._guards._balance
+    balance = simulation.guards.balance
     assert balance.held == pytest.approx(0.5 * 160 * 0.2**2 * np.dot(gravity, gravity), rel=0.1)
     assert -0.05 * balance.held < balance.created < 0.02 * balance.held
     assert balance.excess < CREATED / 10
@@ -206,7 +206,7 @@ def test_a_thrown_block_that_rises_and_falls_is_in_balance():
     most = 0.0
     while simulation.time < 0.45:
         simulation.advance()
-        most = max(most, abs(simulation._guards._balance.excess))
+        most = max(most, abs(simulation.guards.balance.excess))
     assert most < CREATED / 10
 
 
@@ -281,4 +281,4 @@ def test_guards_count_from_the_state_in_which_a_simulation_begins():
     for _ in range(2 * CONTROL_INTERVAL):
         simulation.advance()
     simulation.check()
-    assert abs(simulation._guards._balance.excess) < 1e-6
+    assert abs(simulation.guards.balance.excess) < 1e-6

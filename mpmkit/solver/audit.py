@@ -9,6 +9,7 @@ It cannot see what only happens to other particles or in other steps, nor writes
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -67,7 +68,8 @@ def rehearse_law(p: Particles, group: Group, dt: float) -> None:
     kept = {name: Fenced(array[which], WRITTEN) for name, array in group.state.items()}
     stress = Fenced(p.stress[group.part][which], WRITTEN)
     state = {name: array.rows for name, array in kept.items()}
-    rehearsed = replace(motion, **{name: array.rows for name, array in given.items()})
+    fenced: dict[str, Any] = {name: array.rows for name, array in given.items()}
+    rehearsed = replace(motion, **fenced)
     returned = law.update_stress(rehearsed, state, dt, stress.rows)
     if returned is not None:
         raise PluginFault(
@@ -152,7 +154,9 @@ def require_finite(
         given: arrays with an entry a particle.
     """
     bad = _first_not_finite(written)
-    if bad >= 0 and all(_first_not_finite(array) < 0 for array in given):
+    if bad < 0:
+        return
+    if all(_first_not_finite(array) < 0 for array in given):
         raise PluginFault(
             plugin,
             f"gave particle {numbers[bad]} {what} that is not finite, though all that it was given is",
@@ -161,6 +165,9 @@ def require_finite(
 
 
 def _first_not_finite(array: np.ndarray) -> int:
+    """First row with an entry that is not finite; -1 if there is none."""
+    if math.isfinite(np.add.reduce(array, axis=None)):  # in every step that goes well: one pass, and no more
+        return -1
     firsts = np.empty(len(array) // CHUNK + 1, dtype=np.int64)
     return int(first_not_finite(array.reshape(len(array), -1), firsts))
 

@@ -81,7 +81,7 @@ class EnergyBalance:
         return self._looks_too_high >= LOOKS or not self.excess <= MOST_CREATED
 
     def _power_along(self, p: Particles) -> float:
-        return float(p.mass @ (p.velocity @ self._along))
+        return float(np.einsum("p,pi,i->", p.mass, p.velocity, self._along))
 
 
 def _held(p: Particles) -> float:

@@ -39,4 +39,4 @@ def compressive_energy(p: Particles) -> float:
 
 def potential_energy(p: Particles, gravity: np.ndarray) -> float:
     """-Σ m g·x, with x from the grid's lower corner."""
-    return -float(p.mass @ (p.position @ gravity))
+    return -float(np.einsum("p,pi,i->", p.mass, p.position, gravity))

@@ -23,21 +23,27 @@ DRIFT = 1e-9
 
 
 class Guards:
-    """Looks at a simulation every few steps, and stops it where it is beyond saving."""
+    """Looks at a simulation every few steps, and stops it where it is beyond saving.
+
+    Attributes:
+        watches_energy: set it to False where something beside gravity does work, such as forces that a program
+            adds to the nodes; a law that does work of its own says so itself (``passive``).
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._mass: float | None = None
         self._longest_step = 0.0
-        self._balance: EnergyBalance | None = None
+        self.watches_energy = all(group.law.passive for group in simulation.particles.groups)
+        self.balance: EnergyBalance | None = None
 
     def begin(self) -> None:
         """Take mass and energy of the state in which the simulation begins, or goes on."""
         s = self._simulation
         if self._mass is None:
             self._mass = float(np.sum(s.particles.mass))
-            if all(group.law.passive for group in s.particles.groups):
-                self._balance = EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
+            if self.watches_energy:
+                self.balance = EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
 
     def check(self) -> None:
         """Raise GuardStop if a particle is unsound, if mass got lost, or if energy came from nowhere.
@@ -53,17 +59,17 @@ class Guards:
         if unsound >= 0:
             stop(self._simulation, int(unsound))
         self._check_mass()
-        if self._balance is not None:
-            self._balance.update(p, self._simulation.time)
-            if self._balance.broken:
-                self._stop_of_energy(self._balance)
+        if self.balance is not None:
+            self.balance.update(p, self._simulation.time)
+            if self.watches_energy and self.balance.broken:
+                self._stop_of_energy(self.balance)
 
     def accept_changes(self) -> None:
         """To be called where splitting, or a sound speed that follows the flow, may have changed energies."""
         s = self._simulation
         follows = any(group.mach is not None for group in s.particles.groups)
-        if self._balance is not None and (follows or s.case.scheme.splitting):
-            self._balance.accept(s.particles)
+        if self.balance is not None and (follows or s.case.scheme.splitting):
+            self.balance.accept(s.particles)
 
     def check_step(self) -> None:
         """Raise GuardStop if the step that was chosen is none, or far shorter than it once was."""

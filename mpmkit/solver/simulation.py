@@ -54,7 +54,7 @@ class Simulation:
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
-        self._guards = Guards(self)
+        self.guards = Guards(self)
         self.choose_time_step()
 
     def choose_time_step(self) -> None:
@@ -67,7 +67,7 @@ class Simulation:
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = self._mean_speed()
-        self._guards.check_step()
+        self.guards.check_step()
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
@@ -94,13 +94,13 @@ class Simulation:
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.
         """
-        self._guards.begin()
+        self.guards.begin()
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
             if self.case.scheme.splitting:
                 self._split()
             self.choose_time_step()
-            self._guards.accept_changes()
+            self.guards.accept_changes()
         try:
             lost = self.operations.begin()
         except Scattered as error:
@@ -125,4 +125,4 @@ class Simulation:
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
-        self._guards.check()
+        self.guards.check()
