@@ -26,8 +26,8 @@ class Guards:
     """Looks at a simulation every few steps, and stops it where it is beyond saving.
 
     Attributes:
-        watches_energy: set it to False where something beside gravity does work, such as forces that a program
-            adds to the nodes; a law that does work of its own says so itself (``passive``).
+        watches_energy: set it to False where something beside gravity does work, such as forces that a
+            program adds to the nodes; a law that does work of its own says so itself (``passive``).
     """
 
     def __init__(self, simulation: Simulation) -> None:
