@@ -1,4 +1,4 @@
-"""Whose code raised an exception: what a plug-in raises is told in one sentence that names it."""
+"""Whose fault it is: what a plug-in raises, or gives back, is told in one sentence that names it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .case.model import Case
 from .contracts import Plugin
-from .errors import GuardStop, MpmkitError, reason
+from .errors import GuardStop, MpmkitError, PluginFault, reason
 from .provenance import plugins_of
 from .registry import installed
 
@@ -20,7 +20,7 @@ NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
 
 @contextmanager
 def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: (0, 0.0)) -> Iterator[None]:
-    """Stop a run inside the block by a guard where a plug-in of the case raises an exception.
+    """Stop a run inside the block by a guard where a plug-in of the case raises an exception, or is at fault.
 
     Args:
         case: names the plug-ins.
@@ -33,6 +33,12 @@ def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: 
         yield
     except MpmkitError:
         raise
+    except PluginFault as fault:
+        step, time = when()
+        sentence = (
+            f"stopped at step {step}, t = {time:.6g} s: the plug-in {_named(fault.plugin, case)} {fault}"
+        )
+        raise GuardStop(GUARD, sentence, step=step, particle=fault.particle) from fault
     except Exception as error:
         culprit = _culprit(error, plugins_of(case))
         if culprit is None:  # a fault of the framework: it is not to be mistaken for a stranger's
@@ -53,6 +59,14 @@ def _culprit(error: Exception, plugins: list[tuple[str, Plugin]]) -> tuple[str, 
         if module.startswith("mpmkit.") and not module.startswith(NEUTRAL):
             return None
     return None
+
+
+def _named(plugin: object, case: Case) -> str:
+    """The plug-in of a case as sentences have it."""
+    for kind, used in plugins_of(case):
+        if type(used) is type(plugin):
+            return _described(kind, used)
+    return type(plugin).__name__
 
 
 def _described(kind: str, plugin: Plugin) -> str:

@@ -38,6 +38,20 @@ class GuardStop(MpmkitError):
         self.particle = particle
 
 
+class PluginFault(Exception):
+    """A plug-in gave back what cannot be used, or wrote where it must not; ``blame`` names it.
+
+    Attributes:
+        plugin: whose fault it is.
+        particle: number of the particle concerned, or None.
+    """
+
+    def __init__(self, plugin: object, what: str, *, particle: int | None = None) -> None:
+        super().__init__(what)
+        self.plugin = plugin
+        self.particle = particle
+
+
 class OutputError(MpmkitError):
     """Results could not be written: disk full, no permission, directory taken."""
 

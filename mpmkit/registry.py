@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,6 +19,9 @@ from .contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
 """Parameters that a plug-in cannot have, because something else stands at that key of a case."""
+CHOSEN = "MPMKIT_PLUGINS"
+"""Environment variable that names, with commas between, the distributions to load beside mpmkit's own; all of
+them if it is not set, none if it is empty. ``--no-plugins`` of the command line empties it."""
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
@@ -46,8 +50,12 @@ class Problem:
     kind: str | None = None
     """Kind and name of the plug-in, where the entry point got far enough to say them."""
     name: str | None = None
+    left_out: bool = False
+    """Whether nothing is wrong with it but that nobody asked for it."""
 
     def __str__(self) -> str:
+        if self.left_out:
+            return f"plug-in '{self.entry_point}' of distribution '{self.distribution}' {self.reason}"
         return (
             f"plug-in '{self.entry_point}' of distribution '{self.distribution}' is not usable: {self.reason}"
         )
@@ -84,11 +92,15 @@ class Registry:
 
 
 def discover() -> Registry:
-    """Load every entry point of the group ``mpmkit``."""
+    """Load every entry point of the group ``mpmkit``, or those of the distributions that ``CHOSEN`` names."""
     found: list[Registered] = []
     problems: list[Problem] = []
+    chosen = _chosen()
     for entry_point in sorted(entry_points(group=hooks.PROJECT), key=_origin):
         distribution, name = _origin(entry_point)
+        if chosen is not None and _normal(distribution) not in chosen:
+            problems.append(Problem(distribution, name, _why_left_out(), left_out=True))
+            continue
         try:
             for one in _load(entry_point):
                 (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
@@ -97,7 +109,28 @@ def discover() -> Registry:
             SystemExit,
         ) as error:  # whatever a stranger's module does must stay its own problem
             problems.append(Problem(distribution, name, _reason(error)))
+    there = {_normal(_origin(entry_point)[0]) for entry_point in entry_points(group=hooks.PROJECT)}
+    for name in sorted((chosen or set()) - there - {_normal(hooks.PROJECT)}):
+        problems.append(Problem(name, "*", f"is not installed, though {CHOSEN} names it", left_out=True))
     return Registry(found, problems)
+
+
+def _chosen() -> set[str] | None:
+    """Distributions to load, None for all of them; mpmkit's own is one of them whatever is asked."""
+    named = os.environ.get(CHOSEN)
+    if named is None:
+        return None
+    return {_normal(hooks.PROJECT), *(_normal(name) for name in named.split(",") if name.strip())}
+
+
+def _why_left_out() -> str:
+    named = os.environ.get(CHOSEN, "")
+    return f"was left out, since {CHOSEN} is '{named}'" if named else "was left out, as --no-plugins asks"
+
+
+def _normal(distribution: str) -> str:
+    """The name of a distribution as package indices compare it."""
+    return re.sub(r"[-_.]+", "-", distribution.strip()).lower()
 
 
 @cache

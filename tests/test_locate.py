@@ -126,3 +126,36 @@ def test_largest_speed(dim):
 @pytest.mark.parametrize(("n", "chunks"), [(0, 0), (1, 1), (CHUNK, 1), (CHUNK + 1, 2)])
 def test_chunks(n, chunks):
     assert chunk_count(n) == chunks
+
+
+def sound_state(n, dim=2):
+    rng = np.random.default_rng(18)
+    state = [rng.normal(size=shape) for shape in ((n, dim), (n, dim), (n, 6), (n,))]
+    return [*state, rng.uniform(0.5, 2.0, n)]
+
+
+@pytest.mark.parametrize("bad", [[], [0], [CHUNK], [3 * CHUNK], [5, 2 * CHUNK + 7]], ids=str)
+@pytest.mark.parametrize("field", range(5))
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_the_first_unsound_particle(bad, field, value):
+    state = sound_state(3 * CHUNK + 1)
+    rows = state[field].reshape(len(state[field]), -1)
+    rows[bad, -1] = value
+    firsts = np.empty(len(rows) // CHUNK + 1, dtype=np.int64)
+    with np.errstate(invalid="ignore"):  # NumPy's, where kernels are not compiled
+        assert locate.first_unsound(*state, 0.1, 10.0, firsts) == (min(bad) if bad else -1)
+        assert locate.first_not_finite(rows, firsts) == (min(bad) if bad else -1)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "sound"), [(0.1, True), (0.09, False), (-1, False), (10, True), (10.1, False)]
+)
+def test_volume_ratios_have_bounds(ratio, sound):
+    state = sound_state(CHUNK + 1)
+    state[-1][CHUNK] = ratio
+    assert locate.first_unsound(*state, 0.1, 10.0, np.empty(2, dtype=np.int64)) == (-1 if sound else CHUNK)
+
+
+def test_numbers_whose_sum_overflows_are_finite():
+    rows = np.full((CHUNK, 2), 1e308)
+    assert locate.first_not_finite(rows, np.empty(2, dtype=np.int64)) == -1

@@ -1,6 +1,7 @@
 """Discovery: whatever a stranger's distribution does stays its own problem, and is told of."""
 
 import json
+import os
 import sys
 import textwrap
 
@@ -227,6 +228,81 @@ def test_a_good_law_of_a_third_party_runs_from_the_command_line(distribution, tm
     path.write_text(json.dumps(case()).replace('"yield_stress": 100', '"yield_stres": 100'), encoding="utf-8")
     assert status("run", path, "--out", tmp_path / "other") == 2
     assert "unknown key 'yield_stres'; did you mean 'yield_stress'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("asked", ["option", "empty variable", "another named"])
+def test_third_parties_that_are_left_out_are_told_of_and_built_ins_stay(
+    asked, distribution, tmp_path, monkeypatch, capsys
+):
+    distribution("slurry-pack", slurry=LAW)
+    distribution("Mud_Pack", mud=LAW.replace('"slurry"', '"mud"'))
+    monkeypatch.setenv("MPMKIT_PLUGINS", "mud-pack" if asked == "another named" else "")
+    option = []
+    if asked == "option":
+        monkeypatch.delenv("MPMKIT_PLUGINS")
+        monkeypatch.setenv("MPMKIT_PLUGINS", "")  # so that what the option sets does not outlive the test
+        del os.environ["MPMKIT_PLUGINS"]
+        option = ["--no-plugins"]
+    why = "since MPMKIT_PLUGINS is 'mud-pack'" if asked == "another named" else "as --no-plugins asks"
+
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case()), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "run", *option) == 2
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert 'bodies.0.material.law is "slurry"; it must be "bingham"' in sentence
+    assert f"plug-in 'law.slurry' of distribution 'slurry-pack' was left out, {why}" in sentence
+    assert not (tmp_path / "run").exists()
+
+    assert status(*option, "plugins") == 0
+    listed = capsys.readouterr()
+    assert "bingham" in listed.out
+    assert ("mud" in listed.out) == (asked == "another named")
+    assert "'slurry-pack' was left out" in listed.err
+    parse_case(case("bingham"))
+
+
+def test_a_named_distribution_that_is_not_there_is_told_of(distribution, monkeypatch):
+    distribution("mud-pack", mud=LAW.replace('"slurry"', '"mud"'))
+    monkeypatch.setenv("MPMKIT_PLUGINS", "mud-pack, no-such-pack")
+    registry = discover()
+    assert {"mud", "bingham"} <= set(registry.plugins["law"])
+    (problem,) = [p for p in registry.problems if p.distribution == "no-such-pack"]
+    assert "is not installed, though MPMKIT_PLUGINS names it" in str(problem)
+
+
+FAULTS = {
+    "a number that is none": (
+        "self.plastic_viscosity",
+        "np.full_like(shear_rate, np.nan)",
+        "stress that is not finite",
+    ),
+    "another shape": ("self.plastic_viscosity", "np.ones(3)[:, None]", "must return an array of shape (64,)"),
+    "an exception": ("self.plastic_viscosity", "{}['yield surface']", "raised KeyError: 'yield surface'"),
+}
+
+
+@pytest.mark.parametrize(("good", "bad", "reason"), FAULTS.values(), ids=FAULTS)
+def test_a_law_that_fails_in_a_run_is_named_with_its_distribution(
+    good, bad, reason, distribution, tmp_path, capsys
+):
+    """Once it has been asked a few times; the summary says so, and other cases run on."""
+    law = LAW.replace("import numpy as np", "import numpy as np\nasked = []")
+    law = law.replace(
+        "        return self.yield", "        asked.append(len(shear_rate))\n        return self.yield"
+    )
+    law = law.replace(f"+ {good}", f"+ ({bad} if asked.count(64) > 6 else {good})")
+    distribution("faulty-pack", slurry=law)
+    distribution("good-pack", mud=LAW.replace('"slurry"', '"mud"'))
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case() | {"until": 0.05}), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "run", "--quiet") == 3
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert sentence.startswith("mpmkit: stopped at step ")
+    assert "the plug-in 'slurry' (law, of faulty-pack) " in sentence
+    assert reason in sentence
+    assert json.loads((tmp_path / "run" / "summary.json").read_text())["stopped_because"] == "plug-in-error"
+    path.write_text(json.dumps(case("mud")), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "other", "--quiet") == 0
 
 
 def _newtonian():

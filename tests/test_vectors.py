@@ -102,3 +102,21 @@ def test_kernels_run_uncompiled():
         command, cwd=Path(__file__).parent, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+BEYOND = """
+import numpy as np
+from mpmkit.kernels import tensors
+tensors.determinant(np.tile(np.eye(3), (700, 1, 1)), np.zeros(300))
+"""
+
+
+@pytest.mark.parametrize("variable", ["NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT"])
+def test_a_write_beyond_an_array_is_seen_where_continuous_integration_looks_for_it(variable, tmp_path):
+    """In a parallel loop, where it is silent otherwise: else the jobs that run with either prove nothing."""
+    environment = {**os.environ, variable: "1", "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", BEYOND], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "out of bounds" in done.stderr

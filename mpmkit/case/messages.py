@@ -121,7 +121,7 @@ def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
 
 
 def _unusable(path: Path, name: Any, registry: Registry) -> str:
-    """Of the plug-ins that could not be loaded, those that may have been meant, or else all of them."""
+    """Of the plug-ins that were not loaded, those that may have been meant, or else all of them."""
     kinds = [
         key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
     ]
@@ -133,4 +133,4 @@ def _unusable(path: Path, name: Any, registry: Registry) -> str:
     if meant:
         return "".join(f"; {problem}" for problem in meant)
     names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)
-    return f"; plug-ins that could not be loaded are {names}, see mpmkit plugins"
+    return f"; plug-ins that were not loaded are {names}, see mpmkit plugins"

@@ -12,7 +12,20 @@ import click
 
 from .. import __version__
 from ..errors import MpmkitError, OutputError
-from . import bench, chart, compare, new_plugin, plan, plugins, rerun, run, schema, stability, study
+from . import (
+    bench,
+    chart,
+    compare,
+    new_plugin,
+    options,
+    plan,
+    plugins,
+    rerun,
+    run,
+    schema,
+    stability,
+    study,
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
@@ -29,6 +42,8 @@ def commands(context: click.Context) -> None:
 
 for module in (run, rerun, plan, compare, study, chart, stability, bench, plugins, new_plugin, schema):
     commands.add_command(module.command)
+for command in (commands, *commands.commands.values()):
+    command.params.append(options.no_plugins)
 
 
 def execute(arguments: Sequence[str] | None) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import click
 
 case_file = click.argument("case", type=click.Path())
@@ -35,7 +37,19 @@ workers = click.option(
 scheduler = click.option(
     "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."
 )
+no_plugins = click.Option(
+    ["--no-plugins"],
+    is_flag=True,
+    expose_value=False,
+    callback=lambda context, option, asked: _leave_out_plugins() if asked else None,
+    help="Load no plug-ins but mpmkit's own; MPMKIT_PLUGINS=NAME,… loads those of named distributions.",
+)
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def _leave_out_plugins() -> None:
+    """In this process and in those that it starts: by the environment, since nothing is loaded yet."""
+    os.environ["MPMKIT_PLUGINS"] = ""
 
 
 def with_until(overrides: tuple[str, ...], until: float | None) -> tuple[str, ...]:

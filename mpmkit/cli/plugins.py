@@ -15,7 +15,7 @@ COLUMNS = ("kind", "name", "distribution", "citation")
 @click.command("plugins")
 @options.as_json
 def command(as_json: bool) -> None:
-    """List the registered plug-ins, and those that could not be loaded."""
+    """List the registered plug-ins, and those that could not be loaded or were left out."""
     from ..registry import installed
 
     registry = installed()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_serializer, model_validator
 from pydantic.json_schema import GetJsonSchemaHandler
 from pydantic_core import CoreSchema
@@ -20,6 +21,22 @@ def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
     return Field(
         description=f"{description} [{unit}]".strip(), json_schema_extra={"unit": unit}, **constraints
     )
+
+
+def one_each(values: Any, asked: np.ndarray, method: str) -> np.ndarray:
+    """What a method returned for an array, if it is an array of the same shape.
+
+    Raises:
+        TypeError: it is not; a compiled loop would read beyond its end.
+    """
+    if not isinstance(values, np.ndarray) or values.shape != asked.shape:
+        what = (
+            f"an array of shape {values.shape}"
+            if isinstance(values, np.ndarray)
+            else f"a {type(values).__name__}"
+        )
+        raise TypeError(f"{method} returned {what}; it must return an array of shape {asked.shape}")
+    return values
 
 
 class Plugin(BaseModel):

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from ..kernels.tensors import shear_rate, viscous_stress
 from . import maxwell
+from .base import one_each
 from .law import ConstitutiveLaw, Motion
 
 REST_SHEAR_RATE = 1e-12
@@ -46,7 +47,8 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
             maxwell.relax(motion, self._modulus(motion), dt, stress, self._relaxed)
             return
         rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
-        viscous_stress(motion.velocity_gradient, self.apparent_viscosity(rate), stress)
+        viscosity = one_each(self.apparent_viscosity(rate), rate, "apparent_viscosity")
+        viscous_stress(motion.velocity_gradient, viscosity, stress)
 
     def largest_viscosity(self, largest_shear_rate: float) -> float:
         if self.form == "relaxed":

@@ -55,6 +55,9 @@ class ConstitutiveLaw(Plugin):
     uses_equation_of_state: ClassVar[bool] = True
     needs_deformation_gradient: ClassVar[bool] = False
     state: ClassVar[Mapping[str, StateVariable]] = {}
+    passive: ClassVar[bool] = True
+    """Whether it only stores energy and dissipates it. A law that does work of its own, as one that swells,
+    says False, and the energy of a scene that has it is not guarded."""
     exact_form: ClassVar[str | None] = None
     """Of a regularised law: the name of the one with the same flow curve and an exact yield stress, for
     ``plan`` to offer."""

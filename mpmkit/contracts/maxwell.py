@@ -20,6 +20,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..kernels.elastic import elastic_trial, shrink
+from .base import one_each
 from .law import Motion
 
 STIFFNESS = 0.05
@@ -52,7 +53,7 @@ def relax(
     """Advance ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
     trial = np.empty(len(stress))
     elastic_trial(motion.velocity_gradient, dt, modulus, stress, trial)
-    shrink(stress, trial, relaxed(trial, modulus * dt))
+    shrink(stress, trial, one_each(relaxed(trial, modulus * dt), trial, "relaxed_stress"))
 
 
 def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndarray:
@@ -79,7 +80,10 @@ def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) 
     """
     result = trial.copy()
     low = np.full(len(trial), least_rate)
-    flows = np.flatnonzero(curve(low) + stiffness * low < trial)
+    at_rest = curve(low)
+    if np.ndim(at_rest):  # a constant will do
+        one_each(at_rest, low, "the flow curve")
+    flows = np.flatnonzero(at_rest + stiffness * low < trial)
     if not len(flows):
         return result
     target, low = trial[flows], low[flows]

@@ -92,8 +92,8 @@ def largest_speed(velocity, scratch):
 
 
 @kernel()
-def first_unsound(position, velocity, stress, pressure, volume_ratio, firsts):
-    """First particle whose state is not finite or whose volume ratio is not positive; -1 if all are sound.
+def first_unsound(position, velocity, stress, pressure, volume_ratio, least, most, firsts):
+    """First particle whose state is not finite or whose volume ratio is not in [least, most]; -1 without one.
 
     ``firsts`` is scratch, an integer a chunk.
     """
@@ -108,8 +108,36 @@ def first_unsound(position, velocity, stress, pressure, volume_ratio, firsts):
                 total += position[p, d] + velocity[p, d]
             for k in range(6):
                 total += stress[p, k]
-            if not (np.isfinite(total) and volume_ratio[p] > 0.0) and first < 0:
+            if not (np.isfinite(total) and least <= volume_ratio[p] <= most) and first < 0:
                 first = p
+        firsts[c] = first
+    for c in range(chunks):
+        if firsts[c] >= 0:
+            return firsts[c]
+    return -1
+
+
+@kernel()
+def first_not_finite(rows, firsts):
+    """First of ``rows (n, width)`` with an entry that is not finite; -1 if there is none.
+
+    ``firsts`` is scratch, an integer a chunk.
+    """
+    n, width = rows.shape
+    chunks = chunk_count(n)
+    for c in prange(chunks):
+        first, begin, end = -1, c * CHUNK, min(n, (c + 1) * CHUNK)
+        total = 0.0
+        for p in range(begin, end):
+            row = 0.0  # of its own, so that rows need not wait for each other
+            for k in range(width):
+                row += 0.0 * rows[p, k]  # 0 × ∞ is not a number, and nothing overflows
+            total += row
+        if total != 0.0:
+            for p in range(end - 1, begin - 1, -1):
+                for k in range(width):
+                    if not np.isfinite(rows[p, k]):
+                        first = p
         firsts[c] = first
     for c in range(chunks):
         if firsts[c] >= 0:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..kernels.tensors import shear_rate
+from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from .grid import Grid
 from .particles import Particles
 
@@ -41,15 +42,6 @@ class Measures:
         height = self._height(p, inside)
         axis_height = self._height(p, inside & self._near_axis(p))
         squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
-        strain = compressive = 0.0
-        for group in p.groups:
-            part = group.part
-            volume = p.initial_volume[part]
-            strain += float(
-                np.sum(volume * group.law.strain_energy(p.motion(group), group.state, p.stress[part]))
-            )
-            if group.law.uses_equation_of_state:
-                compressive += float(np.sum(volume * group.compressive_energy(p.volume_ratio[part])))
         # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
         return {
@@ -57,10 +49,11 @@ class Measures:
             "height": height,
             "axis_height": axis_height,
             "slump": self.initial_height - axis_height,
-            "kinetic_energy": 0.5 * float(np.sum(p.mass * squared)),
-            "potential_energy": -float(np.sum(p.mass * ((p.position + self.grid.lower) @ gravity))),
-            "strain_energy": strain,
-            "compressive_energy": compressive,
+            "kinetic_energy": kinetic_energy(p),
+            "potential_energy": potential_energy(p, gravity)
+            - float(np.sum(p.mass)) * (self.grid.lower @ gravity),
+            "strain_energy": strain_energy(p),
+            "compressive_energy": compressive_energy(p),
             "total_mass": float(np.sum(p.mass)),
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
             "max_speed": float(np.sqrt(squared.max())),

@@ -8,9 +8,11 @@ import numpy as np
 
 from ..case.model import Scheme
 from ..contracts.operations import Measure
+from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather, gather_scalar
 from ..kernels.scatter import scatter, scatter_pairs
+from . import audit
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Group, Particles
@@ -39,6 +41,8 @@ class SceneOperations:
         self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
         self._gather, self._gather_scalar = gather(dim, support), gather_scalar(dim, support)
         self._gradient_due = False
+        self._begun = 0
+        self._auditing = True
         self.allocate()
 
     def allocate(self) -> None:
@@ -60,6 +64,9 @@ class SceneOperations:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
         lost = self._sort()
         if lost is None:
+            self._rehearsing = self._begun % audit.INTERVAL == 0
+            self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
+            self._begun += 1
             self._evaluate_shapes()
         return lost
 
@@ -68,6 +75,8 @@ class SceneOperations:
 
     def _evaluate_shapes(self) -> None:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
+        if self._rehearsing:
+            audit.rehearse_shape(shape, p.position, p.half_size, dx, self.radial)
         tables = p.position, p.half_size, self.base, self.weight, self.gradient
         if self.radial:
             radius, half_size, base, weight, gradient = (table[:, 0] for table in tables)
@@ -119,6 +128,11 @@ class SceneOperations:
 
     # --- Nodes
 
+    @property
+    def mapped_mass(self) -> float | None:
+        """Mass that the nodes got in the last step, kg; None where there was none since they were made."""
+        return float(self.window.nodes[:, 0].sum()) if self.layout.sorts else None
+
     def solve_momentum(self, dt: float) -> None:
         nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
 
@@ -131,6 +145,8 @@ class SceneOperations:
             self.update_velocity_gradient()
 
     def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+        if not math.isfinite(flip):
+            raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 
@@ -162,8 +178,12 @@ class SceneOperations:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
-        p = self.particles
-        group.law.update_stress(p.motion(group), group.state, dt, p.stress[group.part])
+        p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
+        if self._rehearsing:
+            audit.rehearse_law(p, group, dt)
+        group.law.update_stress(motion, group.state, dt, stress)
+        if self._auditing:
+            audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
@@ -174,11 +194,19 @@ class SceneOperations:
         for group in p.groups:
             part = group.part
             if group.law.uses_equation_of_state:
-                volumes.assign(p.pressure[part], group.pressure(p.volume_ratio[part]))
+                volumes.assign(p.pressure[part], self._pressure(group, p.volume_ratio[part]))
             elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
+
+    def _pressure(self, group: Group, volume_ratio: np.ndarray) -> np.ndarray:
+        pressure, author = group.pressure(volume_ratio), group.equation_of_state
+        audit.require_shape(author, "pressure", pressure, volume_ratio.shape)
+        if self._auditing:
+            numbers = self.particles.number[group.part]
+            audit.require_finite(author, "a pressure", pressure, numbers, [volume_ratio])
+        return pressure
 
     def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
@@ -193,8 +221,11 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        treated = self.scheme.volumetric.average(self, field)
+        treated, author = self.scheme.volumetric.average(self, field), self.scheme.volumetric
         if treated is not field:
+            audit.require_shape(author, "average", treated, field.shape)
+            if self._auditing:
+                audit.require_finite(author, "an average", treated, self.particles.number, [field])
             for group in self.particles.groups:
                 if not group.law.uses_equation_of_state:
                     treated[group.part] = field[group.part]
@@ -210,6 +241,10 @@ class SceneOperations:
         rate = self.scheme.volumetric.relaxation_rate(self)
         if rate == 0.0:
             return
+        if not rate >= 0:
+            raise PluginFault(
+                self.scheme.volumetric, f"has a relaxation rate of {rate} /s; it must be positive"
+            )
         p = self.particles
         for group in p.groups:
             if group.law.uses_equation_of_state:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
-
 import numpy as np
 
 from ..case.model import Case
-from ..errors import GuardStop
 from ..kernels.compile import CHUNK
-from ..kernels.locate import first_unsound, largest_speed
+from ..kernels.locate import largest_speed
 from .grid import Grid
+from .guards import Guards, stop
 from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
@@ -56,6 +54,7 @@ class Simulation:
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
+        self.guards = Guards(self)
         self.choose_time_step()
 
     def choose_time_step(self) -> None:
@@ -68,6 +67,7 @@ class Simulation:
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = self._mean_speed()
+        self.guards.check_step()
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
@@ -92,19 +92,21 @@ class Simulation:
         """One step, no longer than ``at_most`` seconds; returns its length.
 
         Raises:
-            GuardStop: a particle is outside the grid, not finite, or without volume.
+            GuardStop: the run is beyond saving, see ``guards``.
         """
+        self.guards.begin()
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
             if self.case.scheme.splitting:
                 self._split()
             self.choose_time_step()
+            self.guards.accept_changes()
         try:
             lost = self.operations.begin()
         except Scattered as error:
-            self._stop(error.particle, scattered=True)
+            stop(self, error.particle, scattered=True)
         if lost is not None:
-            self._stop(lost)
+            stop(self, lost)
         if self.steps == 0:
             self.operations.start()
         dt = min(self.time_step, at_most)
@@ -119,50 +121,8 @@ class Simulation:
             if split(self.particles, self.grid, self.case.space_.radial):
                 self.operations.allocate()
         except OutOfMemory as error:
-            self._stop(error.particle, drawn_out=True)
+            stop(self, error.particle, drawn_out=True)
 
     def check(self) -> None:
-        """Raise GuardStop if a particle has a state that is not finite, or a volume that is not positive."""
-        p = self.particles
-        firsts = np.empty(len(p) // CHUNK + 1, dtype=np.int64)
-        unsound = first_unsound(p.position, p.velocity, p.stress, p.pressure, p.volume_ratio, firsts)
-        if unsound >= 0:
-            self._stop(int(unsound))
-
-    def _stop(self, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
-        """Raise the GuardStop that fits what has become of a particle."""
-        p, axes = self.particles, self.grid.axes
-        number, position = int(p.number[index]), p.position[index] + self.grid.lower
-        state = np.concatenate([position, p.velocity[index], p.stress[index], p.pressure[index : index + 1]])
-        if not np.isfinite(state).all():
-            guard = "non-finite"
-            what = "has a position, velocity or stress that is not finite"
-            cure = "the run diverged, reduce scheme.time_step.fraction"
-        elif p.volume_ratio[index] <= 0:
-            guard = "volume-ratio"
-            what = f"has a volume ratio of {p.volume_ratio[index]:.3g}, which is not positive"
-            cure = "the run diverged, reduce scheme.time_step.fraction"
-        elif not (p.half_size[index] > 0).all() or not np.isfinite(p.half_size[index]).all():
-            guard = "particle-domain"
-            sides = ", ".join(f"{2 * size:.3g}" for size in p.half_size[index])
-            what = f"has a domain with sides of {sides} m"
-            cure = "the run diverged, reduce scheme.time_step.fraction"
-        elif drawn_out:
-            guard = "splitting"
-            what = "and others are drawn out so far that their halves do not fit into memory"
-            cure = "if the run diverges, reduce scheme.time_step.fraction"
-        elif scattered:
-            guard = "scattered"
-            what = "is so far from the others that the nodes between them do not fit into memory"
-            cure = "if it was thrown out, reduce scheme.time_step.fraction"
-        else:
-            guard = "particle-outside"
-            where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
-            what = f"left the grid at {where} m"
-            cure = "enlarge grid.domain, close that face, or, if it was thrown out, reduce the time step"
-        raise GuardStop(
-            guard,
-            f"stopped at step {self.steps}, t = {self.time:.6g} s: particle {number} {what}; {cure}",
-            step=self.steps,
-            particle=number,
-        )
+        """Raise GuardStop if the run is beyond saving, see ``guards``."""
+        self.guards.check()

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ..case.model import Scheme
+from ..errors import PluginFault
 from .particles import Group
 
 VISCOUS_NUMBER = 0.375
@@ -43,6 +44,10 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
     for group in groups:
         acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
         viscosity = group.law.largest_viscosity(largest_rate)
+        if not viscosity >= 0:
+            raise PluginFault(
+                group.law, f"has a largest viscosity of {viscosity} Pa s; it must not be negative"
+            )
         viscous = min(viscous, _quotient(VISCOUS_NUMBER * group.density * cell_size**2, viscosity))
     return Limits(acoustic, viscous, _quotient(cell_size, largest_speed))
 

@@ -1,0 +1,88 @@
+"""The energy balance of a scene: what moves and is stored, against what was put in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
+from .grid import Grid
+from .particles import Particles
+
+CREATED = 0.2
+"""Energy from nowhere, over the energy that the scene had to move with, that is not taken for long."""
+LOOKS = 10
+"""Looks in a row at which there may be as much."""
+MOST_CREATED = 1.0
+"""What is not taken at all. Of a wave of frequency ω an explicit step conserves (v² + ω²x² - ωΔt v ωx)/2, so
+that K + U goes up to 1/(1 - ωΔt/2) of what it was: twice, for the shortest wave at half the critical step."""
+
+ROUNDING = 1e-9
+"""Energy that is nothing, over that of flying at the speed of the fastest wave."""
+
+
+class EnergyBalance:
+    """Keeps account of the energy of a scene.
+
+    Walls are at rest and materials dissipate, so that what moves and is stored can be no more than what did
+    at the start and what gravity has done since,
+
+        created = (K + U) - (K + U)(0) - W <= 0,
+
+    with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
+    particles have come down by, and, along a periodic axis, which has no height, the integral of its power.
+    A sound speed that follows the flow changes U from outside, and so does splitting, which leaves part of
+    the affine velocity to the halves: both are taken as put in.
+    """
+
+    def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray, time: float) -> None:
+        self._downwards = np.where(grid.periodic, 0.0, gravity)
+        self._along = np.where(grid.periodic, gravity, 0.0)
+        self._first = self.held = _held(particles)
+        self._height = potential_energy(particles, self._downwards)
+        self._time, self._power = time, self._power_along(particles)
+        self._put_in = self._most_work = 0.0
+        self.created = 0.0
+        self._looks_too_high = 0
+        mass = float(np.sum(particles.mass))
+        fastest = max(group.wave_speed for group in particles.groups)
+        # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
+        self._least = mass * (float(np.linalg.norm(gravity)) * grid.cell_size + ROUNDING * fastest**2)
+
+    def update(self, p: Particles, time: float) -> None:
+        """Take the energies of the present state."""
+        self.held = _held(p)
+        power = self._power_along(p)
+        self._put_in += (time - self._time) * (power + self._power) / 2
+        self._time, self._power = time, power
+        work = self._height - potential_energy(p, self._downwards) + self._put_in
+        self._most_work = max(self._most_work, abs(work))
+        self.created = self.held - self._first - work
+        self._looks_too_high = self._looks_too_high + 1 if self.excess > CREATED else 0
+
+    def accept(self, p: Particles) -> None:
+        """Take what has become of the energy since ``update`` as put in from outside."""
+        held = _held(p)
+        self._put_in += held - self.held
+        self.held = held
+
+    @property
+    def supply(self) -> float:
+        """Energy that the scene had to move with, J: at the start, and from gravity at its most."""
+        return self._first + self._most_work + self._least
+
+    @property
+    def excess(self) -> float:
+        """Energy created, over the supply."""
+        return self.created / self.supply
+
+    @property
+    def broken(self) -> bool:
+        """Whether far too much energy was created, or too much for too long."""
+        return self._looks_too_high >= LOOKS or not self.excess <= MOST_CREATED
+
+    def _power_along(self, p: Particles) -> float:
+        return float(np.einsum("p,pi,i->", p.mass, p.velocity, self._along))
+
+
+def _held(p: Particles) -> float:
+    return kinetic_energy(p) + strain_energy(p) + compressive_energy(p)

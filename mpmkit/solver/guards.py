@@ -1,0 +1,178 @@
+"""What stops a run that has gone wrong: each guard says when, which particle, likely why, and what to try."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from ..errors import GuardStop, PluginFault
+from ..kernels.compile import CHUNK
+from ..kernels.locate import first_unsound
+from .balance import EnergyBalance
+from .particles import LEAST_RATIO, MOST_RATIO
+from .time_step import warnings
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+COLLAPSED = 1e-4
+"""Part of the longest step so far below which it has collapsed: a run that took a minute now takes a week."""
+DRIFT = 1e-9
+"""Part of the mass that may get lost: rounding is a thousand times less."""
+
+
+class Guards:
+    """Looks at a simulation every few steps, and stops it where it is beyond saving.
+
+    Attributes:
+        watches_energy: set it to False where something beside gravity does work, such as forces that a
+            program adds to the nodes; a law that does work of its own says so itself (``passive``).
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._mass: float | None = None
+        self._longest_step = 0.0
+        self.watches_energy = all(group.law.passive for group in simulation.particles.groups)
+        self.balance: EnergyBalance | None = None
+
+    def begin(self) -> None:
+        """Take mass and energy of the state in which the simulation begins, or goes on."""
+        s = self._simulation
+        if self._mass is None:
+            self._mass = float(np.sum(s.particles.mass))
+            if self.watches_energy:
+                self.balance = EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
+
+    def check(self) -> None:
+        """Raise GuardStop if a particle is unsound, if mass got lost, or if energy came from nowhere.
+
+        Raises:
+            PluginFault: mass got lost because a shape function's weights do not sum to one.
+        """
+        self.begin()
+        p = self._simulation.particles
+        firsts = np.empty(len(p) // CHUNK + 1, dtype=np.int64)
+        state = p.position, p.velocity, p.stress, p.pressure, p.volume_ratio
+        unsound = first_unsound(*state, LEAST_RATIO, MOST_RATIO, firsts)
+        if unsound >= 0:
+            stop(self._simulation, int(unsound))
+        self._check_mass()
+        if self.balance is not None:
+            self.balance.update(p, self._simulation.time)
+            if self.watches_energy and self.balance.broken:
+                self._stop_of_energy(self.balance)
+
+    def accept_changes(self) -> None:
+        """To be called where splitting, or a sound speed that follows the flow, may have changed energies."""
+        s = self._simulation
+        follows = any(group.mach is not None for group in s.particles.groups)
+        if self.balance is not None and (follows or s.case.scheme.splitting):
+            self.balance.accept(s.particles)
+
+    def check_step(self) -> None:
+        """Raise GuardStop if the step that was chosen is none, or far shorter than it once was."""
+        s = self._simulation
+        step = s.time_step
+        if not step > COLLAPSED * self._longest_step or not s.time + step > s.time:
+            fastest = _fastest(s)
+            speed = float(np.linalg.norm(s.particles.velocity[fastest]))
+            was = f", from {self._longest_step:.3g} s at its longest" if self._longest_step else ""
+            what = f"is the fastest, {speed:.4g} m/s, and the step has fallen to {step:.3g} s{was}"
+            why = f"the {s.limited_by} limit sets it; {remedy(s)}"
+            if s.limited_by == "viscous":
+                why = "the viscous limit sets it: bound the law's viscosity, or take a relaxed or exact form"
+            raise _stopped(s, "step-collapse", fastest, what, why)
+        self._longest_step = max(self._longest_step, step)
+
+    def _check_mass(self) -> None:
+        s, p = self._simulation, self._simulation.particles
+        mass = float(np.sum(p.mass))
+        assert self._mass is not None
+        if not abs(mass - self._mass) <= DRIFT * self._mass:
+            off, found = np.zeros(len(p)), f"and the particles have a mass of {mass:.9g} kg"
+            for group in p.groups:
+                off[group.part] = np.abs(
+                    p.mass[group.part] / (group.density * p.initial_volume[group.part]) - 1
+                )
+            worst = int(np.argmax(off))
+            what = f"has {p.mass[worst]:.4g} kg, {found}, where they had {self._mass:.9g} kg"
+            raise _stopped(
+                s, "mass-drift", worst, what, "something writes to their masses; try it --no-plugins"
+            )
+        mapped = s.operations.mapped_mass
+        if mapped is not None and not abs(mapped - mass) <= DRIFT * mass:
+            total = np.prod(s.operations.weight.sum(axis=-1), axis=1)
+            worst = int(np.argmax(np.abs(total - 1)))
+            if not abs(total[worst] - 1) <= DRIFT:
+                what = f"gave particle {p.number[worst]} weights that sum to {total[worst]:.9g} and not to 1"
+                raise PluginFault(s.case.scheme.shape, what, particle=int(p.number[worst]))
+            what = f"and the others have {mass:.9g} kg, but the nodes have got {mapped:.9g} kg of it"
+            order = f"order '{s.case.scheme.order.name}' may not map it; try another one"
+            raise _stopped(s, "mass-drift", worst, what, order)
+
+    def _stop_of_energy(self, balance: EnergyBalance) -> NoReturn:
+        s = self._simulation
+        fastest = _fastest(s)
+        speed = float(np.linalg.norm(s.particles.velocity[fastest]))
+        what = (
+            f"is the fastest, {speed:.4g} m/s, and {balance.created:.4g} J have come from nowhere: "
+            f"what moves and is stored is {balance.held:.4g} J, and there was {balance.supply:.4g} J to do so"
+        )
+        raise _stopped(s, "energy", fastest, what, remedy(s))
+
+
+def stop(s: Simulation, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
+    """Raise the GuardStop that fits what has become of a particle."""
+    p, axes = s.particles, s.grid.axes
+    position = p.position[index] + s.grid.lower
+    state = np.concatenate([position, p.velocity[index], p.stress[index], p.pressure[index : index + 1]])
+    ratio, sides = p.volume_ratio[index], 2 * p.half_size[index]
+    why = remedy(s)
+    if not np.isfinite(state).all():
+        guard, what = "non-finite", "has a position, velocity or stress that is not finite"
+    elif not LEAST_RATIO <= ratio <= MOST_RATIO:
+        guard, what = (
+            "volume-ratio",
+            f"has a volume ratio of {ratio:.3g}, outside {LEAST_RATIO:g} to {MOST_RATIO:g}",
+        )
+        if ratio <= 0:
+            what = f"has a volume ratio of {ratio:.3g}, which is not positive"
+    elif not (sides > 0).all() or not np.isfinite(sides).all():
+        guard = "particle-domain"
+        what = f"has a domain with sides of {', '.join(f'{side:.3g}' for side in sides)} m"
+    elif drawn_out:
+        guard, what = "splitting", "and others are drawn out so far that their halves do not fit into memory"
+    elif scattered:
+        guard = "scattered"
+        what = "is so far from the others that the nodes between them do not fit into memory"
+    else:
+        guard = "particle-outside"
+        where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
+        what = f"left the grid at {where} m"
+        why = f"enlarge grid.domain or close that face; or, if it was thrown out, {why}"
+    raise _stopped(s, guard, index, what, why)
+
+
+def remedy(s: Simulation) -> str:
+    """The likeliest cause of a run that diverges, and what to try."""
+    scheme = s.case.scheme
+    exceeded = warnings(scheme, s.limits, s.time_step)
+    if exceeded:
+        return f"likely since {exceeded[0]}: take that limit out of it"
+    for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric):
+        for caution in plugin.cautions(s.case):
+            return f"likely since {caution}"
+    fraction = scheme.time_step.fraction
+    return f"likely the step is too long: reduce scheme.time_step.fraction, which is {fraction:g}"
+
+
+def _fastest(s: Simulation) -> int:
+    return int(np.argmax(np.einsum("pi,pi->p", s.particles.velocity, s.particles.velocity)))
+
+
+def _stopped(s: Simulation, guard: str, index: int, what: str, why: str) -> GuardStop:
+    number = int(s.particles.number[index])
+    sentence = f"stopped at step {s.steps}, t = {s.time:.6g} s: particle {number} {what}; {why}"
+    return GuardStop(guard, sentence, step=s.steps, particle=number)
