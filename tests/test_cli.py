@@ -218,7 +218,7 @@ def test_a_run_without_end_can_be_planned(case, capsys):
     assert status("plan", case, "--until", "1e300") == 0
     out = capsys.readouterr().out
     assert "years on this machine" in out
-    assert max(map(len, out.splitlines())) < 100
+    assert max(len(line) for line in out.splitlines() if not line.startswith("warning: ")) < 100
     assert status("plan", case, "--until", "1.7e308") == 2
     assert "more than can be counted" in one_line(capsys)
 

@@ -19,7 +19,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..kernels.elastic import elastic_trial, shrink
+from ..kernels.elastic import elastic_trial, shrink, stored
 from .base import one_each
 from .law import Motion
 
@@ -58,9 +58,9 @@ def relax(
 
 def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndarray:
     """J s:s / (4 G), J/m³ of initial volume."""
-    squares = np.einsum("pk,pk->p", stress[:, :3], stress[:, :3])
-    squares += 2 * np.einsum("pk,pk->p", stress[:, 3:], stress[:, 3:])
-    return motion.volume_ratio * squares / (4 * modulus)
+    energy = np.empty(len(stress))
+    stored(stress, motion.volume_ratio, modulus, energy)
+    return energy
 
 
 def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) -> np.ndarray:

@@ -68,3 +68,15 @@ def shrink(stress, shear_stress, allowed):
                 factor = allowed[p] / shear_stress[p]
                 for k in range(6):
                     stress[p, k] *= factor
+
+
+@kernel()
+def stored(stress, volume_ratio, shear_modulus, energy):
+    """J s:s / (4 G), J/m³ of initial volume, into ``energy (n,)``."""
+    n = len(stress)
+    for chunk in prange(chunk_count(n)):
+        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+            xx, yy, zz = stress[p, 0], stress[p, 1], stress[p, 2]
+            yz, xz, xy = stress[p, 3], stress[p, 4], stress[p, 5]
+            squares = xx * xx + yy * yy + zz * zz + 2 * (yz * yz + xz * xz + xy * xy)
+            energy[p] = volume_ratio[p] * squares / (4 * shear_modulus)
