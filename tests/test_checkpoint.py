@@ -103,12 +103,16 @@ def test_every_case_with_every_order_and_shape(name, order, shape):
 
 @pytest.mark.parametrize(("order", "shape"), SCHEMES)
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("name", ["slump_fast", "slump_quarter"])
+@pytest.mark.parametrize(
+    "name",
+    [n if n in ("slump_fast", "slump_quarter") else pytest.param(n, marks=pytest.mark.slow) for n in COARSE],
+)
 def test_every_law_with_every_order_and_shape(name, law, order, shape):
     data = json.loads((CASES / f"{name}.json").read_text())
-    data["bodies"][0]["material"] = {"law": law, "density": 2000, **LAWS[law]}
-    if law != "neo-hookean":
-        data["bodies"][0]["material"]["sound_speed"] = {"mach": 0.1}
+    for body in data["bodies"]:
+        body["material"] = {"law": law, "density": 2000, **LAWS[law]}
+        if law != "neo-hookean":
+            body["material"]["sound_speed"] = {"mach": 0.1}
     schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
     assert_same(*stopped_at_half(parse_case(data, [*COARSE[name], *schemes])))
 
