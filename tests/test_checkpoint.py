@@ -103,10 +103,7 @@ def test_every_case_with_every_order_and_shape(name, order, shape):
 
 @pytest.mark.parametrize(("order", "shape"), SCHEMES)
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(
-    "name",
-    [n if n in ("slump_fast", "slump_quarter") else pytest.param(n, marks=pytest.mark.slow) for n in COARSE],
-)
+@pytest.mark.parametrize("name", COARSE)
 def test_every_law_with_every_order_and_shape(name, law, order, shape):
     data = json.loads((CASES / f"{name}.json").read_text())
     for body in data["bodies"]:
