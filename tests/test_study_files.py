@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 import xarray
-from studies import CASE, Now, one_line, status
+from studies import CASE, Now, one_line, status, study
 
-from mpmkit.errors import CaseError
+from mpmkit.errors import CaseError, OutputError
 from mpmkit.study import load_study, members_of
+from mpmkit.study.store import Store
 from mpmkit.study.vary import parse_vary
 
 
@@ -232,3 +233,18 @@ def test_compare(here, capsys, monkeypatch):
     assert status(*arguments, "--quiet") == 0
     assert capsys.readouterr() == ("", "")
     assert len(executor.ran) == 4
+
+
+def test_two_studies_into_one_directory(tmp_path):
+    """The second is refused while the first is at work, and nothing of the first is touched."""
+    first, second = study(vary=ORDERS), study(vary=ORDERS, description="another one")
+    store = Store(tmp_path / "both")
+    with store.claimed(first):
+        before = store.study.read_bytes()
+        with pytest.raises(OutputError, match="another study is running there") as refused:
+            Store(tmp_path / "both").claimed(second).__enter__()
+        assert refused.value.exit_status == 4
+        assert store.study.read_bytes() == before
+    with store.claimed(second):
+        pass  # it is free again
+    assert [path.name for path in (tmp_path / "both").iterdir()] == ["study.json"]

@@ -53,8 +53,8 @@ def run_study(
     members = members_of(study)
     store = Store(Path(out) if out is not None else Path("runs") / study.name)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
-    with _cluster(scheduler) as executor:  # first of all: where there is none, nothing is written
-        store.open(study)
+    # The cluster first of all: where there is none, nothing is written.
+    with _cluster(scheduler) as executor, store.claimed(study):
         progress = None if quiet else _progress(study, members, store)
         with progress or nullcontext():
             try:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import xarray
 
-from ..errors import CaseError
+from ..errors import CaseError, OutputError
 from ..output import write_json
 from ..output.atomic import cannot_write, replacing
+from ..output.lock import LOCK_NAME, Locked, locked
 from .members import Member
 from .model import Study
 from .table import table
@@ -26,6 +29,28 @@ class Store:
         self.study = path / "study.json"
         self.results = path / "results.nc"
 
+    @contextmanager
+    def claimed(self, study: Study) -> Iterator[None]:
+        """As ``open``, and keep every other study out of the directory inside the block.
+
+        Raises:
+            CaseError: there is something else in it.
+            OutputError: it cannot be written, or another study is at work there.
+        """
+        self._make()
+        with ExitStack() as held:
+            try:
+                held.enter_context(locked(self.path))
+            except Locked:
+                raise OutputError(
+                    f"cannot write '{self.path}': another study is running there; "
+                    "wait for its end, or write elsewhere with --out DIR"
+                ) from None
+            except OSError as error:
+                raise cannot_write(self.path, error) from error
+            self.open(study)
+            yield
+
     def open(self, study: Study) -> None:
         """Make the directory, or go on in one that holds a study.
 
@@ -33,13 +58,17 @@ class Store:
             CaseError: there is something else in it.
             OutputError: it cannot be written.
         """
+        self._make()
+        write_json(self.study, study.model_dump(mode="json"))
+
+    def _make(self) -> None:
         try:
-            if self.path.exists() and not self.study.exists() and any(self.path.iterdir()):
+            filled = self.path.exists() and any(path.name != LOCK_NAME for path in self.path.iterdir())
+            if filled and not self.study.exists():
                 raise CaseError(f"'{self.path}' exists and holds no study; choose another with --out")
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise cannot_write(self.path, error) from error
-        write_json(self.study, study.model_dump(mode="json"))
 
     def directory(self, member: Member) -> Path:
         return self.path / "members" / member.slug
