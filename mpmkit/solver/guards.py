@@ -65,11 +65,9 @@ class Guards:
                 self._stop_of_energy(self.balance)
 
     def accept_changes(self) -> None:
-        """To be called where splitting, or a sound speed that follows the flow, may have changed energies."""
-        s = self._simulation
-        follows = any(group.mach is not None for group in s.particles.groups)
-        if self.balance is not None and (follows or s.case.scheme.splitting):
-            self.balance.accept(s.particles)
+        """To be called where splitting, or a sound speed that follows the flow, has changed energies."""
+        if self.balance is not None:
+            self.balance.accept(self._simulation.particles)
 
     def check_step(self) -> None:
         """Raise GuardStop if the step that was chosen is none, or far shorter than it once was."""

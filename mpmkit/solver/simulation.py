@@ -54,6 +54,7 @@ class Simulation:
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
+        self._follows_flow = any(group.mach is not None for group in self.particles.groups)
         self.guards = Guards(self)
         self.choose_time_step()
 
@@ -97,10 +98,10 @@ class Simulation:
         self.guards.begin()
         if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
             self.check()
-            if self.case.scheme.splitting:
-                self._split()
+            changed = self.case.scheme.splitting and self._split()
             self.choose_time_step()
-            self.guards.accept_changes()
+            if changed or self._follows_flow:
+                self.guards.accept_changes()
         try:
             lost = self.operations.begin()
         except Scattered as error:
@@ -116,12 +117,15 @@ class Simulation:
         self.particle_steps += len(self.particles)
         return dt
 
-    def _split(self) -> None:
+    def _split(self) -> bool:
+        """Split particles whose boxes are too long; whether there were any."""
         try:
-            if split(self.particles, self.grid, self.case.space_.radial):
-                self.operations.allocate()
+            found = split(self.particles, self.grid, self.case.space_.radial)
         except OutOfMemory as error:
             stop(self, error.particle, drawn_out=True)
+        if found:
+            self.operations.allocate()
+        return found
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
