@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
+from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy, weighted
 from .grid import Grid
 from .particles import Particles
 
@@ -81,7 +81,7 @@ class EnergyBalance:
         return self._looks_too_high >= LOOKS or not self.excess <= MOST_CREATED
 
     def _power_along(self, p: Particles) -> float:
-        return float(np.einsum("p,pi,i->", p.mass, p.velocity, self._along))
+        return weighted(p, p.velocity, self._along)
 
 
 def _held(p: Particles) -> float:

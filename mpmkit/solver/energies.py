@@ -39,4 +39,9 @@ def compressive_energy(p: Particles) -> float:
 
 def potential_energy(p: Particles, gravity: np.ndarray) -> float:
     """-Σ m g·x, with x from the grid's lower corner."""
-    return -float(np.einsum("p,pi,i->", p.mass, p.position, gravity))
+    return -weighted(p, p.position, gravity)
+
+
+def weighted(p: Particles, vectors: np.ndarray, along: np.ndarray) -> float:
+    """Σ m v·a, of vectors ``(n, dim)`` and one direction; without BLAS, whose threads would change the bits."""
+    return float(np.sum(p.mass * np.einsum("pi,i->p", vectors, along))) if along.any() else 0.0
