@@ -43,5 +43,5 @@ def potential_energy(p: Particles, gravity: np.ndarray) -> float:
 
 
 def weighted(p: Particles, vectors: np.ndarray, along: np.ndarray) -> float:
-    """Σ m v·a, of vectors ``(n, dim)`` and one direction; not by BLAS, whose threads would change the bits."""
+    """Σ m v·a, of vectors ``(n, dim)`` and a direction; not by BLAS, whose threads would change the bits."""
     return float(np.sum(p.mass * np.einsum("pi,i->p", vectors, along))) if along.any() else 0.0
