@@ -16,7 +16,11 @@ from mpmkit.output import RunDirectory
 CASE = {
     "space": "plane-strain",
     "until": 1e4,
-    "grid": {"cell_size": 0.1, "domain": {"x": [0, 1], "z": [0, 1]}, "faces": {"z_min": "slip"}},
+    "grid": {
+        "cell_size": 0.1,
+        "domain": {"x": [0, 1], "z": [0, 1]},
+        "faces": {"z_min": "slip", "x_min": "slip", "x_max": "slip"},
+    },
     "bodies": [
         {
             "shape": {"kind": "box", "lower": [0.2, 0.0], "upper": [0.6, 0.4]},

@@ -241,7 +241,7 @@ def test_two_studies_into_one_directory(tmp_path):
     store = Store(tmp_path / "both")
     with store.claimed(first):
         before = store.study.read_bytes()
-        with pytest.raises(OutputError, match="another study is running there") as refused:
+        with pytest.raises(OutputError, match="another study is writing there") as refused:
             Store(tmp_path / "both").claimed(second).__enter__()
         assert refused.value.exit_status == 4
         assert store.study.read_bytes() == before

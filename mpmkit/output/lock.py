@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+
+from ..errors import OutputError
+from .atomic import cannot_write
 
 try:
     import fcntl
@@ -36,6 +39,26 @@ def locked(directory: Path) -> Iterator[None]:
         with suppress(OSError):
             path.unlink()  # before the lock is given up, so that no one else's file is removed
         os.close(file)
+
+
+@contextmanager
+def alone_in(directory: Path, what: str) -> Iterator[None]:
+    """As ``locked``, with a sentence for who comes second; ``what`` is a run or a study.
+
+    Raises:
+        OutputError: another one is at work there, or the directory cannot be written.
+    """
+    with ExitStack() as held:
+        try:
+            held.enter_context(locked(directory))
+        except Locked:
+            raise OutputError(
+                f"cannot write '{directory}': another {what} is writing there; "
+                "wait for its end, or write elsewhere with --out DIR"
+            ) from None
+        except OSError as error:
+            raise cannot_write(directory, error) from error
+        yield
 
 
 def _hold(path: Path) -> int:

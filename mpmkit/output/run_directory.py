@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..errors import CaseError, OutputError
+from ..errors import CaseError
 from .atomic import cannot_write
 from .checkpoints import Checkpoints
 from .frames import LIST_NAME
-from .lock import LOCK_NAME, Locked, locked
+from .lock import LOCK_NAME, alone_in
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
@@ -69,16 +69,7 @@ class RunDirectory:
         """
         if not resume:
             self._make()  # what is refused anyway is refused before a lock is put into it
-        with ExitStack() as held:
-            try:
-                held.enter_context(locked(self.path))
-            except Locked:
-                raise OutputError(
-                    f"cannot write '{self.path}': another run is writing there; "
-                    "wait for its end, or write elsewhere with --out DIR"
-                ) from None
-            except OSError as error:
-                raise cannot_write(self.path, error) from error
+        with alone_in(self.path, "run"):
             if not resume:
                 self.claim()
             yield

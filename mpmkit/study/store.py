@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import xarray
 
-from ..errors import CaseError, OutputError
+from ..errors import CaseError
 from ..output import write_json
 from ..output.atomic import cannot_write, replacing
-from ..output.lock import LOCK_NAME, Locked, locked
+from ..output.lock import LOCK_NAME, alone_in
 from .members import Member
 from .model import Study
 from .table import table
@@ -38,16 +38,7 @@ class Store:
             OutputError: it cannot be written, or another study is at work there.
         """
         self._make()
-        with ExitStack() as held:
-            try:
-                held.enter_context(locked(self.path))
-            except Locked:
-                raise OutputError(
-                    f"cannot write '{self.path}': another study is running there; "
-                    "wait for its end, or write elsewhere with --out DIR"
-                ) from None
-            except OSError as error:
-                raise cannot_write(self.path, error) from error
+        with alone_in(self.path, "study"):
             self.open(study)
             yield
 
