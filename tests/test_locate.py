@@ -115,14 +115,6 @@ def test_wrap():
     assert (position[:, 1] <= 2.0).all()
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-def test_largest_speed(dim):
-    velocity = np.random.default_rng(17).normal(size=(3 * CHUNK + 1, dim))
-    scratch = np.empty(len(velocity) // CHUNK + 1)
-    found = locate.largest_speed(velocity, scratch)
-    assert found == pytest.approx(np.linalg.norm(velocity, axis=1).max(), rel=1e-15)
-
-
 @pytest.mark.parametrize(("n", "chunks"), [(0, 0), (1, 1), (CHUNK, 1), (CHUNK + 1, 2)])
 def test_chunks(n, chunks):
     assert chunk_count(n) == chunks

@@ -131,7 +131,7 @@ def test_general_mappings_average_and_reproduce(shape, faces):
     for measure in ("mass", "volume"):
         nodal = operations.particles_to_nodes(np.full(len(p), 3.5), measure)
         np.testing.assert_allclose(operations.nodes_to_particles(nodal), 3.5, rtol=1e-13)
-    # A node is at the mean of what it sees once its support is full, to either side by half of ``support`` cells.
+    # A node is at the mean of what it sees once its support is full, ``support`` / 2 cells to each side.
     depth = 0.1 * installed().of_kind("shape")[shape].support
     inside = (np.abs(p.position - 0.5) < 0.5 - depth).all(axis=1)
     assert inside.any()

@@ -22,7 +22,7 @@ KERNELS = {
     "nodes": ("map_to_grid", "solve_momentum", "_fold"),
     "nodes to particles": ("_take",),
     "averages": ("_average_at_nodes", "_average_at_particles"),
-    "volumes": ("_update_volumes", "_follow_domains"),
+    "volumes": ("_update_volumes", "_follow_domains", "_treated", "_pressure", "relax_volume"),
     "law": ("_update_law",),
 }
 """What a step consists of, and the operations that do it; the rest is outside the kernels."""

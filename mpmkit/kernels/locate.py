@@ -73,25 +73,6 @@ def wrap(position, axis, length):
 
 
 @kernel()
-def largest_speed(velocity, scratch):
-    """Largest |v|, m/s. ``scratch`` has one entry a chunk."""
-    n, dim = velocity.shape
-    chunks = chunk_count(n)
-    for c in prange(chunks):
-        worst = 0.0
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            squared = 0.0
-            for d in range(dim):
-                squared += velocity[p, d] ** 2
-            worst = max(worst, squared)
-        scratch[c] = worst
-    worst = 0.0
-    for c in range(chunks):
-        worst = max(worst, scratch[c])
-    return np.sqrt(worst)
-
-
-@kernel()
 def first_unsound(position, velocity, stress, pressure, volume_ratio, least, most, firsts):
     """First particle whose state is not finite or whose volume ratio is not in [least, most]; -1 without one.
 

@@ -171,7 +171,9 @@ def require_finite(
 
 def _first_not_finite(array: np.ndarray) -> int:
     """First row with an entry that is not finite; -1 if there is none."""
-    if math.isfinite(np.add.reduce(array, axis=None)):  # in every step that goes well: one pass, and no more
+    if len(array) < FEW and math.isfinite(
+        np.add.reduce(array, axis=None)
+    ):  # for few, less than the call of a kernel
         return -1
     firsts = np.empty(len(array) // CHUNK + 1, dtype=np.int64)
     return int(first_not_finite(array.reshape(len(array), -1), firsts))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..kernels import sums
 from .audit import require_shape
 from .particles import Particles
 
 
 def kinetic_energy(p: Particles) -> float:
     """½ Σ m v², of the particles' own velocities, without what an affine part adds within each."""
-    return 0.5 * float(np.einsum("p,pi,pi->", p.mass, p.velocity, p.velocity))
+    return 0.5 * float(sums.motion(p.mass, p.velocity)[1])
 
 
 def strain_energy(p: Particles) -> float:
@@ -21,7 +22,9 @@ def strain_energy(p: Particles) -> float:
         density = group.law.strain_energy(p.motion(group), group.state, p.stress[group.part])
         if np.ndim(density):
             require_shape(group.law, "strain_energy", density, volume.shape)
-        total += float(np.sum(volume * density))
+            total += _integral(density, volume)
+        elif density:
+            total += float(density) * float(np.sum(volume))
     return total
 
 
@@ -33,8 +36,12 @@ def compressive_energy(p: Particles) -> float:
             volume = p.initial_volume[group.part]
             density = group.compressive_energy(p.volume_ratio[group.part])
             require_shape(group.equation_of_state, "energy", density, volume.shape)
-            total += float(np.sum(volume * density))
+            total += _integral(density, volume)
     return total
+
+
+def _integral(density: np.ndarray | float, volume: np.ndarray) -> float:
+    return float(sums.product(np.ascontiguousarray(density, dtype=float), volume))
 
 
 def potential_energy(p: Particles, gravity: np.ndarray) -> float:
@@ -43,5 +50,5 @@ def potential_energy(p: Particles, gravity: np.ndarray) -> float:
 
 
 def weighted(p: Particles, vectors: np.ndarray, along: np.ndarray) -> float:
-    """Σ m v·a, of vectors ``(n, dim)`` and a direction; not by BLAS, whose threads would change the bits."""
-    return float(np.sum(p.mass * np.einsum("pi,i->p", vectors, along))) if along.any() else 0.0
+    """Σ m v·a, of vectors ``(n, dim)`` and a direction."""
+    return float(sums.moment(p.mass, vectors, along)) if along.any() else 0.0

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..case.model import Case
-from ..kernels.compile import CHUNK
-from ..kernels.locate import largest_speed
+from ..kernels.sums import motion
 from .grid import Grid
 from .guards import Guards, stop
 from .layout import Scattered
@@ -62,12 +63,13 @@ class Simulation:
         """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
         p = self.particles
         follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
-        speed = float(largest_speed(p.velocity, np.empty(len(p) // CHUNK + 1)))
+        mass, doubled, square = motion(p.mass, p.velocity)
+        speed = math.sqrt(square)
         self.mach_number = mach_number(p, speed)
         self.limits = limits(p.groups, self.grid.cell_size, speed)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
-        self.operations.mean_speed = self._mean_speed()
+        self.operations.mean_speed = math.sqrt(doubled / mass)
         self.guards.check_step()
 
     def remarks(self) -> list[str]:
@@ -84,10 +86,6 @@ class Simulation:
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""
         return warnings(self.case.scheme, self.limits, self.time_step)
-
-    def _mean_speed(self) -> float:
-        p = self.particles
-        return float(np.sqrt(np.einsum("p,pi,pi->", p.mass, p.velocity, p.velocity) / np.sum(p.mass)))
 
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.

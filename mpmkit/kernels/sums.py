@@ -1,0 +1,70 @@
+"""Sums over all particles, chunk by chunk: the same bits whatever the number of threads."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import prange
+
+from .compile import CHUNK, chunk_count, function, kernel
+
+
+@function()
+def _in_order(parts):
+    """Σ parts; in a kernel ``parts.sum()`` would be a sum by threads, whose bits depend on their number."""
+    total = 0.0
+    for part in parts:
+        total += part
+    return total
+
+
+@kernel()
+def product(a, b):
+    """Σ a b, of two ``(n,)``."""
+    n = len(a)
+    chunks = chunk_count(n)
+    parts = np.zeros(chunks)
+    for c in prange(chunks):
+        part = 0.0
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            part += a[p] * b[p]
+        parts[c] = part
+    return _in_order(parts)
+
+
+@kernel()
+def moment(mass, vectors, along):
+    """Σ m v·a, of ``(n,)``, vectors ``(n, dim)`` and a direction ``(dim,)``."""
+    n, dim = vectors.shape
+    chunks = chunk_count(n)
+    parts = np.zeros(chunks)
+    for c in prange(chunks):
+        part = 0.0
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            component = 0.0
+            for d in range(dim):
+                component += vectors[p, d] * along[d]
+            part += mass[p] * component
+        parts[c] = part
+    return _in_order(parts)
+
+
+@kernel()
+def motion(mass, velocity):
+    """Σ m, Σ m v² and the largest v², of ``(n,)`` and ``(n, dim)``."""
+    n, dim = velocity.shape
+    chunks = chunk_count(n)
+    parts = np.zeros((chunks, 3))
+    for c in prange(chunks):
+        of_mass = of_square = largest = 0.0
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            square = 0.0
+            for d in range(dim):
+                square += velocity[p, d] ** 2
+            of_mass += mass[p]
+            of_square += mass[p] * square
+            largest = max(largest, square)
+        parts[c, 0], parts[c, 1], parts[c, 2] = of_mass, of_square, largest
+    largest = 0.0
+    for c in range(chunks):
+        largest = max(largest, parts[c, 2])
+    return _in_order(parts[:, 0]), _in_order(parts[:, 1]), largest
