@@ -12,10 +12,12 @@ import numpy as np
 from . import __version__
 from .case import load_case
 from .case.model import Case
+from .case_files import named_files, portable
 from .errors import CaseError
 from .output import RunDirectory
 from .output.checkpoints import Checkpoints
-from .provenance import plugins_used, resolved
+from .output.copies import Copies
+from .provenance import plugins_used
 
 
 def identity(case: Case) -> dict[str, Any]:
@@ -24,7 +26,7 @@ def identity(case: Case) -> dict[str, Any]:
         "mpmkit": __version__,
         "numpy": np.__version__,
         "numba": numba.__version__,
-        "case": json.loads(json.dumps(resolved(case))),
+        "case": json.loads(json.dumps(portable(case))),
         "plugins": {f"{entry['kind']} '{entry['name']}'": _source(entry) for entry in plugins_used(case)},
     }
 
@@ -46,15 +48,27 @@ def differences(before: Any, now: Any, path: str = "") -> list[str]:
     return [sentence for name, a, b in pairs for sentence in differences(a, b, name)]
 
 
+def other_case(before: dict[str, Any], case: Case) -> list[str]:
+    """Where a case differs from one that ``portable`` gave; a file is told of by where it lies."""
+    paths = {file.where: file.path for file in named_files(case)}
+    found = differences(before, json.loads(json.dumps(portable(case))))
+    for number, sentence in enumerate(found):
+        where = sentence.partition(" was ")[0]
+        if where in paths:
+            found[number] = f"{where} is '{paths[where]}', which holds something else"
+    return found
+
+
 def case_of(directory: Path) -> Case:
     """The case that a run directory holds.
 
     Raises:
-        CaseError: it holds none.
+        CaseError: it holds none, or a mesh in it is not what it was.
     """
     file = RunDirectory(directory).case
     if not file.is_file():
         raise CaseError(f"'{directory}' is not the directory of a run: it has no case.json")
+    Copies(RunDirectory(directory).meshes).check()
     return load_case(file)
 
 
@@ -69,7 +83,10 @@ def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray],
     if not checkpoints.paths() and _has_finished(files):
         raise CaseError(f"the run in '{directory}' has finished: there is nothing to go on with")
     arrays, words = checkpoints.newest()
-    if found := differences(words["identity"], identity(case)):
+    before, now = words["identity"], identity(case)
+    found = differences(before | {"case": None}, now | {"case": None})
+    found += [f"case.{sentence}" for sentence in other_case(before["case"], case)]
+    if found:
         more = f", and {len(found) - 1} more" if len(found) > 1 else ""
         raise CaseError(
             f"the run in '{directory}' cannot go on, since it would be another one: {found[0]}{more}"

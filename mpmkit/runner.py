@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import logging
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .blame import blaming_plugins
 from .case.model import Case
+from .case_files import from_copies, named_files, portable
 from .errors import CaseError, GuardStop, OutputError, reason
 from .execution import Listener, Progress, execute
 from .memory import require_memory
 from .output import RunDirectory, open_log, write_json
-from .provenance import attributes, resolved
+from .output.copies import Copies
+from .provenance import attributes
 from .recorder import Recorder
-from .resume import case_of, differences, last_checkpoint
+from .resume import case_of, identity, last_checkpoint, other_case
 from .saver import Saver
 from .solver.simulation import Simulation
 from .solver.state import restore
@@ -60,6 +63,7 @@ def run(
         OutputError: the run directory cannot be written, or another run is writing it.
     """
     require_memory(case)
+    files = [] if out is None else named_files(case)
     with blaming_plugins(case):
         simulation = Simulation(case)
     threads = use_threads(threads, len(simulation.particles))
@@ -68,15 +72,20 @@ def run(
         recorder = Recorder(simulation, attributes(case, threads), None)
         execute(recorder, watch, threads, listen, None)
         return recorder.history.dataset()
-    directory = RunDirectory(Path(out), overwrite)
+    # What is read is read before anything is overwritten: it may lie in that very directory.
+    contents, data, itself = {file.name: file.content() for file in files}, portable(case), identity(case)
+    directory = RunDirectory(Path(out), overwrite, keep=contents)
     with directory.claimed(), open_log(directory.log):
         try:
-            write_json(directory.case, resolved(case))
-            recorder = Recorder(simulation, attributes(case, threads), directory)
+            Copies(directory.meshes).write(contents)
+            write_json(directory.case, data)
+            # The originals, which may even have been cleared away, are not needed any more.
+            simulation.case = from_copies(case, files, directory.meshes)
+            recorder = Recorder(simulation, _attributes(case, threads, data), directory)
         except OutputError as error:
             LOGGER.error("%s", error)
             raise
-        _execute(recorder, watch, threads, listen, checkpoint_every)
+        _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself))
     return recorder.history.dataset()
 
 
@@ -104,7 +113,7 @@ def resume(
     """
     path = Path(directory)
     found = case_of(path)
-    if case is not None and (apart := differences(resolved(found), resolved(case))):
+    if case is not None and (apart := other_case(portable(found), case)):
         raise CaseError(f"the case is not that of the run in '{path}': {apart[0]}")
     require_memory(found)
     with RunDirectory(path).claimed(resume=True):
@@ -114,19 +123,26 @@ def resume(
                 simulation = Simulation(found)
             restore(simulation, arrays)
             threads = use_threads(threads, len(simulation.particles))
-            said = attributes(found, threads)
+            said = _attributes(found, threads, portable(found))
             recorder = Recorder(simulation, said, RunDirectory(path), words["frames"])
             recorder.restore(arrays, words)
-            _execute(recorder, Stopwatch(words["wall_time"]), threads, listen, checkpoint_every)
+            watch = Stopwatch(words["wall_time"])
+            saver = Saver(recorder, watch, checkpoint_every, words["identity"])
+            _execute(recorder, threads, listen, watch, saver)
     return recorder.history.dataset()
 
 
+def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str]:
+    """Those of a history in a run directory, with the case as it stands there."""
+    return attributes(case, threads) | {"case": json.dumps(data)}
+
+
 def _execute(
-    recorder: Recorder, watch: Stopwatch, threads: int, listen: Listener | None, every: float | None
+    recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
 ) -> None:
     """Run to the end in a directory, and draw the pictures of it even if a guard stopped it."""
     try:
-        execute(recorder, watch, threads, listen, Saver(recorder, watch, every))
+        execute(recorder, watch, threads, listen, saver)
     except GuardStop:
         _report(recorder)
         raise

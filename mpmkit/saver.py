@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time as clock
+from typing import Any
 
 from .output.checkpoints import Checkpoints
 from .recorder import Recorder
-from .resume import identity
 from .solver.state import state_of
 from .stopwatch import Stopwatch
 
@@ -18,15 +18,18 @@ class Saver:
         recorder: of the run; it has a directory.
         watch: its clock, which goes on where it was.
         every: wall time, s, between two checkpoints; None for none but those asked for.
+        identity: of the case, as ``mpmkit.resume`` has it.
     """
 
-    def __init__(self, recorder: Recorder, watch: Stopwatch, every: float | None) -> None:
+    def __init__(
+        self, recorder: Recorder, watch: Stopwatch, every: float | None, identity: dict[str, Any]
+    ) -> None:
         assert recorder.directory is not None
         self._recorder = recorder
         self._watch = watch
         self._every = every
         self._checkpoints = Checkpoints(recorder.directory.checkpoints)
-        self._identity = identity(recorder.simulation.case)
+        self._identity = identity
         self._last = clock.monotonic()
 
     def save_if_due(self) -> None:

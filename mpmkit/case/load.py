@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..errors import CaseError
+from ..geometry import FILES
 from ..registry import Registry, installed
 from .allowed import shown
 from .messages import explain
@@ -23,23 +24,25 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
     """Read and validate a case file.
 
     Args:
-        path: the JSON file; its stem names the case if the case has no name of its own.
-        overrides: ``"path.to.key=value"``, applied before validation.
+        path: the JSON file; its stem names the case if the case has no name of its own. A relative path of a
+            mesh in it starts from the folder of the file.
+        overrides: ``"path.to.key=value"``, applied before validation; a relative path of a mesh in one starts
+            from the working directory, as on any command line.
         registry: plug-ins to choose from; those installed unless told.
 
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
     """
-    data = read_json(path)
-    if isinstance(data, dict):
-        data.setdefault("name", name_from(path))
-    return parse_case(data, overrides, registry, source=str(path))
+    return parse_case(read_case(path), overrides, registry, source=str(path))
 
 
 def parse_case(
     data: Any, overrides: Iterable[str] = (), registry: Registry | None = None, source: str = "case"
 ) -> Case:
-    """Validate a case given as the content of a JSON file; see ``load_case``."""
+    """Validate a case given as the content of a JSON file; see ``load_case``.
+
+    A relative path of a mesh starts from the working directory.
+    """
     registry = registry or installed()
     if not isinstance(data, dict):
         raise CaseError(f"{source}: a case must be a JSON object, not {shown(data)}")
@@ -55,6 +58,32 @@ def parse_case(
         raise CaseError(f"{source}: {NESTED}") from None
     except (TypeError, ValueError) as error:  # of json.dumps, for what Python can say and JSON cannot
         raise CaseError(f"{source}: {error}") from None
+
+
+def read_case(path: str | Path) -> dict[str, Any]:
+    """The content of a case file, not validated yet, with a name, and with paths that hold anywhere.
+
+    Raises:
+        CaseError: it cannot be read, see ``read_json``, or is no object.
+    """
+    data = read_json(path)
+    if not isinstance(data, dict):
+        raise CaseError(f"{path}: a case must be a JSON object, not {shown(data)}")
+    data.setdefault("name", name_from(path))
+    count_from(Path(path).parent, data)
+    return data
+
+
+def count_from(folder: Path, data: dict[str, Any]) -> None:
+    """Make the relative paths of the files that a case names absolute; what is no such path is left alone."""
+    bodies = data.get("bodies")
+    for body in bodies if isinstance(bodies, list) else []:
+        shape = body.get("shape") if isinstance(body, dict) else None
+        if not isinstance(shape, dict):
+            continue
+        for field in FILES.get(str(shape.get("kind")), ()):
+            if isinstance(shape.get(field), str):
+                shape[field] = str(folder.absolute() / shape[field])
 
 
 def read_json(path: str | Path, what: str = "case") -> Any:

@@ -36,17 +36,12 @@ def command(
     quiet: bool,
 ) -> None:
     """Run CASE with every combination of the values given, and gather them as a study does."""
-    from ..case.load import name_from, read_json
+    from ..case.load import name_from, read_case
     from ..case.overrides import apply_overrides
-    from ..errors import CaseError
     from ..study import parse_study
     from ..study.vary import parse_vary
 
-    data = read_json(case)
-    if not isinstance(data, dict):
-        raise CaseError(f"{case}: a case must be a JSON object")
-    data = apply_overrides(data, options.with_until(overrides, until))
-    data.setdefault("name", name_from(case))
+    data = apply_overrides(read_case(case), options.with_until(overrides, until))
     study = parse_study(
         {
             "name": f"compare-{name_from(case)}"[:100],

@@ -48,17 +48,12 @@ def command(
     """
     from dataclasses import asdict
 
-    from ..case.load import name_from, read_json
+    from ..case.load import read_case
     from ..case.overrides import apply_overrides
-    from ..errors import CaseError
     from ..stability import combinations, critical_fraction
     from .display import say
 
-    data = read_json(case)
-    if not isinstance(data, dict):
-        raise CaseError(f"{case}: a case must be a JSON object")
-    data = apply_overrides(data, options.with_until(overrides, until))
-    data.setdefault("name", name_from(case))
+    data = apply_overrides(read_case(case), options.with_until(overrides, until))
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
     rows = []

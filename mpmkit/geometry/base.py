@@ -25,13 +25,16 @@ class Shape(BaseModel):
     lattice point that falls on a face is taken is then not left to rounding, and a symmetric body on a
     symmetric lattice gets symmetric particles.
 
-    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_measure`` and ``_volume``.
+    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_measure`` and ``_volume``; one that is read
+    from a file gives ``files``, ``content`` and ``content_name`` as well.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
     turned: ClassVar[bool] = False
     """Whether in 3-D it is a body of revolution about the vertical through ``middle``."""
+    files: ClassVar[tuple[str, ...]] = ()
+    """Fields that name a file from which it is read."""
 
     def check(self, space: Space) -> None:
         """Refuse a space that cannot hold the shape; for use within pydantic's validators.
@@ -91,6 +94,22 @@ class Shape(BaseModel):
         """
         self._require(space)
         return self._middle() if space.dim == 3 else None
+
+    def content(self, field: str) -> bytes:
+        """A file in place of that in ``field``: it gives the same shape to the bit, and needs no other file.
+
+        Raises:
+            CaseError: the file cannot be read.
+        """
+        raise NotImplementedError(f"{type(self).__name__} names no file in {field}")
+
+    def content_name(self, field: str) -> str:
+        """``name_by_content`` of ``content``, from what is in memory: the same wherever the file lies.
+
+        Raises:
+            CaseError: the file cannot be read.
+        """
+        raise NotImplementedError(f"{type(self).__name__} names no file in {field}")
 
     def _middle(self) -> tuple[float, float] | None:
         return None

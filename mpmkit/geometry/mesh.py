@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -11,10 +9,12 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
+from ..content_names import name_by_content
 from ..contracts.base import quantity
 from ..errors import CaseError
 from ..spaces import Space
 from .base import Shape
+from .mesh_file import as_ply, read_surface
 
 
 class Mesh(Shape):
@@ -27,7 +27,7 @@ class Mesh(Shape):
     kind: Literal["mesh"]
     file: str = Field(
         description="path to a closed surface mesh that meshio reads (STL, OBJ, PLY, VTU, ...); "
-        "a relative one starts from the working directory"
+        "a relative one starts from the folder of the case file"
     )
     scale: float = Field(
         default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
@@ -36,7 +36,18 @@ class Mesh(Shape):
         "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
     )
 
+    files = ("file",)
+
+    def content(self, field: str) -> bytes:
+        return as_ply(*read_surface(str(Path(self.file).absolute()), self.file))
+
+    def content_name(self, field: str) -> str:
+        return self._loaded()[1]
+
     def _surface(self) -> Any:
+        return self._loaded()[0]
+
+    def _loaded(self) -> tuple[Any, str]:
         path = Path(self.file).absolute()
         try:
             changed = path.stat().st_mtime_ns
@@ -89,8 +100,11 @@ _TOLERANCE = 1e-6
 
 
 @lru_cache(maxsize=8)
-def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> Any:
-    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards; ``shown`` names it in errors."""
+def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> tuple[Any, str]:
+    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards, and the name of what the file holds.
+
+    ``shown`` names it in errors.
+    """
     try:
         import igl  # noqa: F401
         import trimesh
@@ -99,7 +113,8 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
             f"the mesh's file is {shown}, but bodies given as a mesh need libigl and trimesh: "
             "pip install 'mpmkit[mesh]'"
         ) from None
-    vertices, faces = _read(path, shown)
+    vertices, faces = read_surface(path, shown)
+    name = name_by_content(as_ply(vertices, faces), ".ply")
     surface = trimesh.Trimesh(vertices, faces, process=False)
     # STL repeats each corner in each of its triangles; triangles that shrink to a line by joining them go.
     surface.merge_vertices(merge_tex=True, merge_norm=True)
@@ -115,7 +130,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
     closed = trimesh.Trimesh(vertices, _outward(vertices, np.asarray(surface.faces)), process=False)
     if not closed.volume > 0:
         raise CaseError(f"the mesh's file is {shown}, but its surface encloses no volume")
-    return closed
+    return closed, name
 
 
 def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -136,28 +151,3 @@ def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
         if inward != (round(depth) % 2 == 1):
             faces[own] = faces[own][:, ::-1]
     return faces
-
-
-def _read(path: str, shown: str) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (v, 3) and triangles (t, 3) of a file; quadrilaterals are split in two."""
-    import meshio  # here, because it is slow to import and most cases have no mesh
-
-    try:
-        # meshio prints its complaints and, for some files, leaves by sys.exit.
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            data = meshio.read(path)
-        blocks = [block.data for block in data.cells if block.type == "triangle"]
-        for block in data.cells:
-            if block.type == "quad":
-                blocks += [block.data[:, [0, 1, 2]], block.data[:, [0, 2, 3]]]
-        vertices = np.asarray(data.points, dtype=float)
-    except (Exception, SystemExit):
-        raise CaseError(
-            f"the mesh's file is {shown}, but meshio cannot read it: "
-            "a surface mesh such as STL, OBJ or PLY is needed"
-        ) from None
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or sum(map(len, blocks)) == 0:
-        raise CaseError(f"the mesh's file is {shown}, but it has no triangles in space")
-    if not np.isfinite(vertices).all():
-        raise CaseError(f"the mesh's file is {shown}, but some of its corners are not finite numbers")
-    return vertices, np.concatenate(blocks).astype(np.int64)

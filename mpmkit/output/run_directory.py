@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import CaseError
 from .atomic import cannot_write
 from .checkpoints import Checkpoints
+from .copies import Copies
 from .frames import LIST_NAME
 from .lock import LOCK_NAME, alone_in
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
+MESHES = "meshes"
+"""Directory of the meshes that the case names; there is none if it names none."""
 
 
 class RunDirectory:
@@ -22,11 +25,13 @@ class RunDirectory:
     Args:
         path: the directory.
         overwrite: whether ``claim`` may clear what an earlier run left there.
+        keep: names of copies of meshes that it leaves in any case: the run may have been read from them.
     """
 
-    def __init__(self, path: Path, overwrite: bool = False) -> None:
+    def __init__(self, path: Path, overwrite: bool = False, keep: Container[str] = ()) -> None:
         self.path = Path(path)
         self.overwrite = overwrite
+        self._keep = keep
 
     @property
     def case(self) -> Path:
@@ -52,6 +57,10 @@ class RunDirectory:
     @property
     def checkpoints(self) -> Path:
         return self.path / "checkpoints"
+
+    @property
+    def meshes(self) -> Path:
+        return self.path / MESHES
 
     @property
     def log(self) -> Path:
@@ -126,6 +135,7 @@ class RunDirectory:
         for path in (*written, self.case, self.log):
             path.unlink(missing_ok=True)
         Checkpoints(self.checkpoints).remove()
+        Copies(self.meshes).remove(but=self._keep)
         for directory in (self.frames, self.report):
             with suppress(OSError):  # it is not there, or something of the user's is in it
                 directory.rmdir()

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ..case.load import name_from, read_json
+from ..case.load import count_from, name_from, read_json
 from ..case.messages import explain
 from ..errors import CaseError
 from ..registry import installed
@@ -16,7 +16,7 @@ from .model import Study
 
 
 def load_study(path: str | Path) -> Study:
-    """Read and validate a study file; the path of its case counts from there.
+    """Read and validate a study file; the path of its case, and those in it, count from there.
 
     Raises:
         CaseError: the study cannot be read, or says something that no study can.
@@ -26,6 +26,8 @@ def load_study(path: str | Path) -> Study:
         data.setdefault("name", name_from(path))
         if isinstance(data.get("case"), str):
             data["case"] = str(Path(path).parent / data["case"])
+        elif isinstance(data.get("case"), dict):
+            count_from(Path(path).parent, data["case"])
     return parse_study(data, source=str(path))
 
 

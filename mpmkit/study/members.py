@@ -8,13 +8,15 @@ import itertools
 import json
 import re
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from .. import __version__
 from ..case import parse_case
-from ..case.load import name_from, read_json
+from ..case.load import read_case
 from ..case.model import Case
 from ..case.overrides import assign
+from ..case_files import portable
 from ..errors import CaseError
 from ..provenance import plugins_used, resolved
 from ..registry import installed
@@ -51,10 +53,10 @@ class Member:
         own = hashlib.sha256(json.dumps(self.labels, sort_keys=True).encode()).hexdigest()[:8]
         return f"{readable}-{own}"
 
-    @property
+    @cached_property  # a mesh that it names may change meanwhile
     def digest(self) -> str:
-        """Of everything that its result depends on: the case and the versions of what runs it."""
-        known = {"case": resolved(self.case), "mpmkit": __version__, "plugins": plugins_used(self.case)}
+        """Of everything that its result depends on: the case, meshes included, and what runs it."""
+        known = {"case": portable(self.case), "mpmkit": __version__, "plugins": plugins_used(self.case)}
         return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest()
 
 
@@ -71,11 +73,7 @@ def members_of(study: Study) -> list[Member]:
     Raises:
         CaseError: the case of a member is not valid; the sentence names the member.
     """
-    base = read_json(study.case) if isinstance(study.case, str) else dict(study.case)
-    if not isinstance(base, dict):
-        raise CaseError(f"{study.case}: a case must be a JSON object")
-    if isinstance(study.case, str):
-        base.setdefault("name", name_from(study.case))
+    base = read_case(study.case) if isinstance(study.case, str) else dict(study.case)
     axes = dimensions(study)
     count = 1
     for labels in axes.values():

@@ -1,0 +1,62 @@
+"""Copies of the files that a case names, each called by what it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from ..content_names import is_name_by_content, name_by_content
+from ..errors import CaseError, reason
+from .atomic import replacing
+
+
+class Copies:
+    """The copies in one run directory."""
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = Path(directory)
+
+    def write(self, contents: Mapping[str, bytes]) -> None:
+        """Add files, by their names.
+
+        Raises:
+            OutputError: where one cannot be written.
+        """
+        for name, content in contents.items():
+            with replacing(self.directory / name) as partial:
+                self.directory.mkdir(exist_ok=True)
+                partial.write_bytes(content)
+
+    def check(self) -> None:
+        """Make sure that each still holds what it is called by.
+
+        Raises:
+            CaseError: one does not, or cannot be read.
+        """
+        for path in self.paths():
+            try:
+                content = path.read_bytes()
+            except OSError as error:
+                raise CaseError(f"the file '{path}' of the run cannot be read: {reason(error)}") from None
+            if name_by_content(content, path.suffix) != path.name:
+                raise CaseError(f"the file '{path}' is not what the run began with: its content has changed")
+
+    def paths(self) -> list[Path]:
+        """The copies; what else lies beside them is not ours."""
+        return [path for path in sorted(self.directory.glob("*")) if is_name_by_content(path.name)]
+
+    def remove(self, but: Container[str] = ()) -> None:
+        """Remove the copies but for some names, and the directory if nothing is left in it.
+
+        Raises:
+            OSError: one cannot be removed.
+        """
+        if self.directory.is_symlink():  # what it leads to is not ours
+            self.directory.unlink()
+            return
+        stale = [path for path in self.paths() if path.name not in but]
+        for path in (*stale, *self.directory.glob(".*.partial")):
+            path.unlink()
+        with suppress(OSError):
+            self.directory.rmdir()
