@@ -1,8 +1,10 @@
-"""Set up before numba is imported: two threads, however few cores, so that tests of determinism can fail."""
+"""Set up before anything is imported: two threads, however few cores, so that tests of determinism can fail,
+and no plug-ins but mpmkit's own, whatever else is installed beside it."""
 
 import os
 
 os.environ.setdefault("NUMBA_NUM_THREADS", "2")
+os.environ["MPMKIT_PLUGINS"] = ""
 
 import numba
 import pytest

@@ -37,7 +37,8 @@ def installed_beside(distribution: Path, place: Path) -> dict[str, str]:
     (info / "entry_points.txt").write_text("\n".join(["[mpmkit]", *points]), encoding="utf-8")
     before = os.environ.get("PYTHONPATH", "")
     paths = [str(place), str(distribution / "src"), str(ROOT), str(ROOT / "plugins"), before]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "NUMBA_NUM_THREADS": "1"}
+    own = {"PYTHONPATH": os.pathsep.join(paths), "MPMKIT_PLUGINS": project["name"], "NUMBA_NUM_THREADS": "1"}
+    return {**os.environ, **own}
 
 
 @pytest.mark.parametrize("kind", KINDS)

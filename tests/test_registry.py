@@ -60,6 +60,7 @@ BROKEN = {
 @pytest.fixture
 def distribution(tmp_path, monkeypatch):
     """Makes a distribution with one entry point a module, found until the test is over."""
+    monkeypatch.delenv("MPMKIT_PLUGINS")
     made = []
 
     def make(name, **sources):
@@ -239,8 +240,6 @@ def test_third_parties_that_are_left_out_are_told_of_and_built_ins_stay(
     monkeypatch.setenv("MPMKIT_PLUGINS", "mud-pack" if asked == "another named" else "")
     option = []
     if asked == "option":
-        monkeypatch.delenv("MPMKIT_PLUGINS")
-        monkeypatch.setenv("MPMKIT_PLUGINS", "")  # so that what the option sets does not outlive the test
         del os.environ["MPMKIT_PLUGINS"]
         option = ["--no-plugins"]
     why = "since MPMKIT_PLUGINS is 'mud-pack'" if asked == "another named" else "as --no-plugins asks"
