@@ -28,7 +28,7 @@ class VolumetricTreatment(Plugin):
     def relaxation_rate(self, ops: Operations) -> float:
         """Rate, 1/s, at which each particle's J is drawn to the average of those around it.
 
-        The average is by initial volume. The rate should not depend on the step: in each, J relaxes by
-        1 - exp(-rate dt) of the difference.
+        The average is by initial volume. The rate should not depend on the step: J relaxes by
+        1 - exp(-∫ rate dt) of the difference, whenever the integral has come to a twentieth.
         """
         return 0.0
