@@ -19,8 +19,8 @@ DOUBLE = 8
 INDEX = 4
 PASSING = 4
 """Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
-DOUBLES_PER_NODE = NODE + PAIR + 1
-"""A node's record, the sums of an average, and the average."""
+DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
+"""A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
 MARGIN = 5
 """Nodes along an axis by which the window is wider than the cells of the material."""
 

@@ -23,7 +23,7 @@ from mpmkit.case import load_case, parse_case
 from mpmkit.errors import CaseError
 from mpmkit.output.checkpoints import MAGIC, Checkpoints
 from mpmkit.runner import resume
-from mpmkit.solver.simulation import Simulation
+from mpmkit.solver.simulation import CONTROL_INTERVAL, Simulation
 from mpmkit.solver.state import restore, state_of
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -77,7 +77,7 @@ def assert_same(a: Simulation, b: Simulation):
 
 
 def stopped_at_half(case, steps=45):
-    """Two simulations after as many steps, one of them stopped in between, neither at a control step."""
+    """Two simulations after as many steps, one of them stopped in between."""
     whole = Simulation(case)
     for _ in range(steps // 2):
         whole.advance()
@@ -99,6 +99,13 @@ def test_every_case_with_every_order_and_shape(name, order, shape):
     schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
     case = load_case(CASES / f"{name}.json", [*COARSE[name], *schemes])
     assert_same(*stopped_at_half(case))
+
+
+@pytest.mark.parametrize("name", COARSE)
+def test_stopped_where_the_limits_and_the_guards_are_looked_at_next(name):
+    """No step has been done since it was taken up: there is nothing on the nodes that could be looked at."""
+    case = load_case(CASES / f"{name}.json", COARSE[name])
+    assert_same(*stopped_at_half(case, steps=4 * CONTROL_INTERVAL))
 
 
 @pytest.mark.parametrize(("order", "shape"), SCHEMES)

@@ -21,7 +21,7 @@ KERNELS = {
     "particles to nodes": ("_map",),
     "nodes": ("map_to_grid", "solve_momentum", "_fold"),
     "nodes to particles": ("_take",),
-    "averages": ("_average_at_nodes", "_average_at_particles"),
+    "averages": ("sum_at_nodes", "average_at_nodes", "average_at_particles"),
     "volumes": ("_update_volumes", "_follow_domains", "_treated", "_pressure", "relax_volume"),
     "law": ("_update_law",),
 }

@@ -31,6 +31,18 @@ def follow_strain(L, dt, box, least, half_size):
 
 
 @kernel()
+def volume_within_reach(volume, half_size, cell_size, within):
+    """V Π min(1, Δx/(2 l_i)), ``(n,)``: what of each box is where its weights are, no longer than a cell."""
+    n, dim = half_size.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            part = 1.0
+            for a in range(dim):
+                part *= min(1.0, 0.5 * cell_size / half_size[p, a])
+            within[p] = volume[p] * part
+
+
+@kernel()
 def follow_volume(volume_ratio, initial_half_size, half_size):
     """l = l0 J^(1/dim)."""
     n, dim = half_size.shape

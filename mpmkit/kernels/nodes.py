@@ -172,6 +172,27 @@ def _touch(node, dim, a, inward, coefficient, solved):
 
 
 @kernel()
+def find_crowding(pairs, room, crowding, rows, tasks, faces, mirrors, face_first):
+    """max(1, Σ w / room) at every node but ghosts, which count to their images. Leaves ``pairs`` empty."""
+    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                crowding[i] = max(1.0, pairs[i, 0] / room[i])
+                pairs[i, 0] = pairs[i, 1] = 0.0
+
+
+@kernel()
+def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, face_first):
+    """Σ w f / crowding at every node, with what lies on ghosts folded in."""
+    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    for t in prange(len(tasks) - 1):
+        for r in range(tasks[t], tasks[t + 1]):
+            for i in range(rows[r, 0], rows[r, 1]):
+                pairs[i, 1] /= crowding[i]
+
+
+@kernel()
 def divide_pairs(pairs, average, rows, tasks, faces, mirrors, face_first):
     """Σ w f / Σ w at every node, zero where nothing is, with what lies on ghosts folded in and filled back.
 

@@ -16,12 +16,10 @@ from . import audit
 from .grid import Grid, Window
 from .layout import Layout
 from .particles import Group, Particles
+from .relaxation import Relaxation
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
-WORTH = 0.05
-"""Part of the departures of J that is due to go before any goes: so little may as well go at once, and to
-average costs a tenth of a step."""
 
 
 class SceneOperations:
@@ -40,7 +38,7 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
-        self.relaxation_due = 0.0
+        self.relaxation = Relaxation()
         support = scheme.shape.support
         self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
         self._gather, self._gather_scalar = gather(dim, support), gather_scalar(dim, support)
@@ -60,6 +58,7 @@ class SceneOperations:
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
         self._rate = np.zeros(n)
+        self._mapped = False
         self._no_rows = np.zeros((0, dim))
 
     # --- The frame of a step
@@ -105,6 +104,7 @@ class SceneOperations:
         reach = self.layout.reach
         nodes.clear(self.window.nodes, reach.rows, reach.tasks)
         self._map(momentum=True, forces=forces)
+        self._mapped = True
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
         nodes.momentum_to_velocity(self.window.nodes, *reach.arguments, self.grid.friction)
 
@@ -135,7 +135,7 @@ class SceneOperations:
     @property
     def mapped_mass(self) -> float | None:
         """Mass that the nodes got in the last step, kg; None where there was none since they were made."""
-        return float(self.window.nodes[:, 0].sum()) if self.layout.sorts else None
+        return float(self.window.nodes[:, 0].sum()) if self._mapped else None
 
     def solve_momentum(self, dt: float) -> None:
         nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
@@ -236,59 +236,38 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        """J ← J + (1 - exp(-∫ rate dt)) (A J - J), with A the average over a material by initial volume.
-
-        The integral is over the time since the last one, which was when it had come to ``WORTH``.
-        A is symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any
-        convex energy Σ V0 e(J) does not grow. Each material is averaged by itself: at one pressure, two of
-        them have two volume ratios.
-        """
-        rate = self.scheme.volumetric.relaxation_rate(self)
-        if not rate >= 0:
-            raise PluginFault(
-                self.scheme.volumetric, f"has a relaxation rate of {rate} /s; it must be positive"
-            )
-        self.relaxation_due += rate * dt
-        if self.relaxation_due < WORTH:
-            return
-        part, self.relaxation_due = -math.expm1(-self.relaxation_due), 0.0
-        p = self.particles
-        for group in p.groups:
-            if group.law.uses_equation_of_state:
-                self._average_at_nodes(p.volume_ratio, self._only(group))
-                mean = self._average_at_particles()
-                volumes.draw(p.volume_ratio[group.part], mean[group.part], part)
-
-    def _only(self, group: Group) -> np.ndarray:
-        """Initial volumes of a material, zero for the others."""
-        p = self.particles
-        if len(p.groups) == 1:
-            return p.initial_volume
-        measure = np.zeros(len(p))
-        measure[group.part] = p.initial_volume[group.part]
-        return measure
+        self.relaxation.advance(self, dt)
 
     # --- Fields in general
 
     def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self._average_at_nodes(values, self._measure(measure))
-        return self._average_at_particles()
+        self.average_at_nodes(values, self._measure(measure))
+        return self.average_at_particles()
 
     def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self._average_at_nodes(values, self._measure(measure))
+        self.average_at_nodes(values, self._measure(measure))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         self.window.average[:, 0] = nodal
-        return self._average_at_particles()
+        return self.average_at_particles()
 
-    def _average_at_nodes(self, values: np.ndarray, weight: np.ndarray) -> None:
-        """Σ w N f / Σ w N into ``window.average``; zero where nothing is."""
+    def sum_at_nodes(self, values: np.ndarray, weight: np.ndarray) -> None:
+        """Σ w N and Σ w N f into ``window.pairs``, which must be empty."""
         w, tables = self.window, (self.base, self.weight)
         self._scatter_pairs(w.pairs, w.strides, w.lower, self.layout.tasks, *tables, weight, values)
+
+    def average_at_nodes(
+        self, values: np.ndarray, weight: np.ndarray, crowding: np.ndarray | None = None
+    ) -> None:
+        """Σ w N f / Σ w N, over the crowding if any, into ``window.average``; zero where nothing is."""
+        w = self.window
+        self.sum_at_nodes(values, weight)
+        if crowding is not None:
+            nodes.relieve_pairs(w.pairs, crowding, *self.layout.reach.arguments)
         nodes.divide_pairs(w.pairs, w.average, *self.layout.reach.arguments)
 
-    def _average_at_particles(self) -> np.ndarray:
+    def average_at_particles(self) -> np.ndarray:
         w, out = self.window, np.empty(len(self.particles))
         self._gather_scalar(w.average, w.strides, w.lower, self.base, self.weight, out)
         return out

@@ -24,7 +24,7 @@ def state_of(simulation: Simulation) -> State:
         "limits": list(simulation.limits.as_dict().values()),
         "mach_number": simulation.mach_number,
         "mean_speed": operations.mean_speed,
-        "relaxation_due": operations.relaxation_due,
+        "relaxation_due": operations.relaxation.due,
         "contacts": operations.window.nodes[:, CONTACT],
         "parts": [[group.part.start, group.part.stop] for group in p.groups],
         "sound_speeds": [np.nan if g.sound_speed is None else g.sound_speed for g in p.groups],
@@ -56,7 +56,7 @@ def restore(simulation: Simulation, state: State) -> None:
     operations.layout.restore({name: state[f"layout.{name}"] for name in operations.layout.state()})
     operations.window.nodes[:, CONTACT] = state["contacts"]
     operations.mean_speed = float(state["mean_speed"])
-    operations.relaxation_due = float(state["relaxation_due"])
+    operations.relaxation.due = float(state["relaxation_due"])
     simulation.time, simulation.steps = float(state["time"]), int(state["steps"])
     simulation.particle_steps = int(state["particle_steps"])
     simulation.time_step, simulation.limited_by = float(state["time_step"]), str(state["limited_by"])

@@ -14,6 +14,8 @@ from mpmkit.contracts import (
 
 LONG = 40.0
 """Times √(h/g) after which fluids without a yield stress were seen to lose volume, at the earliest."""
+HOLDS_RELAXATION = 1.0
+"""E-folds a cell that hold the places of particles, where boxes are split so that they tell of crowding."""
 HOLDS_YIELD, HOLDS_VISCOSITY = 10.0, 100.0
 """Yield stress, Pa, and viscosity, Pa s, at which none was lost (docs/stability/volumes_and_energy.md)."""
 
@@ -27,7 +29,8 @@ class NodalAverage(VolumetricTreatment):
     A cannot see what varies from particle to particle within its reach, so that nothing holds J together
     there; as particles move over the grid, some of what it did see gets lost in that blind spot. J is
     therefore drawn to its average at the rate at which the material crosses cells, a mean speed over a cell:
-    independent of the step, and nothing at rest.
+    independent of the step, and nothing at rest. The same rate holds the places: where particles crowd, J is
+    drawn to the volume that is there.
     """
 
     name = "nodal-average"
@@ -44,13 +47,16 @@ class NodalAverage(VolumetricTreatment):
     )
 
     def cautions(self, case) -> list[str]:
+        if case.scheme.splitting and self.relaxation >= HOLDS_RELAXATION:
+            return []
         free_fall = math.sqrt(case.height / (math.hypot(*case.gravity_vector) or math.inf))
         thin = any(_is_thin(body.material.constitutive_law) for body in case.bodies)
         if not thin or not free_fall or case.until < LONG * free_fall:
             return []
         return [
             "volumetric 'nodal-average' loses volume in a fluid of little viscosity and yield stress that "
-            f"swings for longer than {LONG * free_fall:.2g} s; 'own' on slip walls does not"
+            f"swings for longer than {LONG * free_fall:.2g} s, unless scheme.splitting is true and its "
+            f"relaxation at least {HOLDS_RELAXATION:g}"
         ]
 
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:

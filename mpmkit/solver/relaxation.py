@@ -1,0 +1,91 @@
+"""Volume ratios drawn to what the grid says of them: the one way in which J hears of where particles are."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import PluginFault
+from ..kernels import domains, nodes, volumes
+from .node_volumes import node_volumes
+from .particles import Group
+
+if TYPE_CHECKING:
+    from .operations import SceneOperations
+
+WORTH = 0.05
+"""Part of the departures of J that is due to go before any goes: so little may as well go at once, and to
+average costs a tenth of a step."""
+CROWDED = 0.02
+"""Part by which a node may be too full before it counts: boxes do not quite tile what they fill."""
+
+
+class Relaxation:
+    """J ← J + (1 - exp(-∫ rate dt)) (A J - J), with A the average over a material by initial volume.
+
+    The integral is over the time since the last one, which was when it had come to ``WORTH``. A is symmetric
+    in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any convex energy
+    Σ V0 e(J) does not grow. Each material is averaged by itself: at one pressure, two of them have two volume
+    ratios.
+
+    Where a node has more material on it than room, J is drawn to the average over the crowding κ instead,
+
+        κ = max(1, Σ V_p N_np / V_n),
+
+    the volume there is: particles have come too close, whatever their rates say that they have done. Of V_p
+    counts what is within reach of the weights, so that boxes drawn out longer than a cell, between which
+    material is torn, crowd nothing; boxes that stay as they are tell nothing.
+
+    Attributes:
+        due: the integral so far.
+    """
+
+    def __init__(self) -> None:
+        self.due = 0.0
+
+    def advance(self, operations: SceneOperations, dt: float) -> None:
+        """Go on by a step.
+
+        Raises:
+            PluginFault: the treatment's rate is none.
+        """
+        treatment, p = operations.scheme.volumetric, operations.particles
+        rate = treatment.relaxation_rate(operations)
+        if not rate >= 0:
+            raise PluginFault(treatment, f"has a relaxation rate of {rate} /s; it must be positive")
+        self.due += rate * dt
+        if self.due < WORTH:
+            return
+        part, self.due = -math.expm1(-self.due), 0.0
+        crowding = find_crowding(operations)
+        for group in p.groups:
+            if group.law.uses_equation_of_state:
+                operations.average_at_nodes(p.volume_ratio, _only(operations, group), crowding)
+                mean = operations.average_at_particles()
+                volumes.draw(p.volume_ratio[group.part], mean[group.part], part)
+
+
+def find_crowding(operations: SceneOperations) -> np.ndarray | None:
+    """κ of every node of the window, ``(nodes,)``; None where boxes do not tell."""
+    if operations.scheme.shape.particle_domain == "fixed":
+        return None
+    p, window = operations.particles, operations.window
+    within = np.empty(len(p))
+    domains.volume_within_reach(p.volume, p.half_size, operations.cell_size, within)
+    operations.sum_at_nodes(within, within)
+    room = (1 + CROWDED) * node_volumes(window, operations.radial)
+    crowding = np.ones(len(room))
+    nodes.find_crowding(window.pairs, room, crowding, *operations.layout.reach.arguments)
+    return crowding
+
+
+def _only(operations: SceneOperations, group: Group) -> np.ndarray:
+    """Initial volumes of a material, zero for the others."""
+    p = operations.particles
+    if len(p.groups) == 1:
+        return p.initial_volume
+    measure = np.zeros(len(p))
+    measure[group.part] = p.initial_volume[group.part]
+    return measure

@@ -1,0 +1,130 @@
+"""What nodes have room for, and what becomes of J where there is more on them than that."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mpmkit
+from mpmkit.kernels import nodes
+from mpmkit.kernels.domains import volume_within_reach
+from mpmkit.solver.node_volumes import node_volumes
+from mpmkit.solver.relaxation import CROWDED, find_crowding
+
+DX, SIDE = 0.1, 0.6
+AXES = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}
+WALLS = ("slip", "stick", "symmetry", "periodic")
+
+
+def filled(space, wall="slip", per_axis=2, **scheme):
+    """A domain that is full of fluid, between walls of one kind."""
+    axes, radial = AXES[space], space == "axisymmetric"
+    faces = {f"{axis}_{side}": wall for axis in axes for side in ("min", "max")}
+    if radial:
+        faces = {f"z_{side}": wall for side in ("min", "max")}
+        faces["r_max"] = wall if wall in ("slip", "stick") else "slip"
+    cylinder = {"kind": "cylinder", "radius": SIDE, "height": SIDE}
+    box = {"kind": "box", "lower": [0.0] * len(axes), "upper": [SIDE] * len(axes)}
+    case = {
+        "space": space,
+        "until": 1.0,
+        "gravity": [0.0] * len(axes),
+        "grid": {"cell_size": DX, "domain": {axis: [0.0, SIDE] for axis in axes}, "faces": faces},
+        "bodies": [
+            {
+                "shape": cylinder if radial else box,
+                "particles_per_cell": per_axis ** len(axes),
+                "material": {"law": "newtonian", "viscosity": 0.0, "density": 1000.0, "sound_speed": 10.0},
+            }
+        ],
+        "scheme": scheme,
+    }
+    simulation = mpmkit.Simulation(mpmkit.parse_case(case))
+    simulation.operations.begin()
+    return simulation
+
+
+def fullness(simulation):
+    """Σ V_p N_np over the room of each node that has any of it, what is on ghosts left out."""
+    o, p = simulation.operations, simulation.particles
+    room = node_volumes(o.window, o.radial)
+    measure = np.ones(len(p))
+    o.sum_at_nodes(measure, p.volume)
+    reach = o.layout.reach
+    nodes.fold(o.window.pairs, reach.faces, reach.mirrors, reach.face_first, 0, 2, False)
+    found = o.window.pairs[:, 0] / room
+    o.window.pairs[:] = 0.0
+    return found[found > 0]
+
+
+@pytest.mark.parametrize("per_axis", [1, 2, 3])
+@pytest.mark.parametrize("wall", WALLS)
+@pytest.mark.parametrize("space", AXES)
+def test_boxes_that_tile_a_domain_fill_its_nodes(space, wall, per_axis):
+    """Σ_p V_p N_np = V_n, at walls, edges and corners too; but for an axis, where there is no bound."""
+    found = fullness(filled(space, wall, per_axis))
+    assert len(found) >= 6**2
+    np.testing.assert_allclose(found, 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("space", AXES)
+def test_boxes_that_are_not_on_the_lattice_fill_them_as_well(space):
+    """A body that was moved by a part of a cell, or drawn out along one axis and thinned along another."""
+    simulation = filled(space, per_axis=2)
+    o, p = simulation.operations, simulation.particles
+    p.position[:, -1] *= 0.8
+    p.half_size[:, -1] *= 0.8
+    p.volume *= 0.8
+    o.begin()
+    found = fullness(simulation)
+    assert found.max() == pytest.approx(1.0, rel=1e-12)
+    assert np.isclose(found, 1.0, rtol=1e-12).sum() > 0.6 * len(found)  # those below the surface
+
+
+@pytest.mark.parametrize("space", AXES)
+def test_where_there_is_room_nothing_is_crowded(space):
+    crowding = find_crowding(filled(space).operations)
+    assert (crowding == 1.0).all()
+    assert find_crowding(filled(space, shape="linear").operations) is None
+
+
+@pytest.mark.parametrize("space", AXES)
+def test_particles_that_crowd_are_drawn_to_the_volume_there_is(space):
+    """All of them half as high: twice too much. J goes to (1 + CROWDED)/2, deep below the surface."""
+    simulation = filled(space, volumetric={"name": "nodal-average", "relaxation": 1.0})
+    o, p = simulation.operations, simulation.particles
+    p.position[:, -1] *= 0.5  # boxes and volumes as they were
+    o.mean_speed = DX  # a rate of one
+    o.begin()
+    assert find_crowding(o).max() == pytest.approx(2 / (1 + CROWDED), rel=1e-9)
+    o.relax_volume(0.1)
+    inside = p.position[:, -1] < 0.5 * SIDE - 2.5 * DX
+    assert inside.any()
+    if o.radial:
+        inside &= p.position[:, 0] > DX
+    drawn = 1 - (1 - np.exp(-0.1)) * (1 - (1 + CROWDED) / 2)
+    np.testing.assert_allclose(p.volume_ratio[inside], drawn, rtol=1e-9)
+    assert p.volume_ratio.max() <= 1.0
+
+
+def test_little_that_is_due_waits_until_it_is_worth_it():
+    """Four steps of a hundredth do nothing, the next does what all of them were due."""
+    simulation = filled("plane-strain", volumetric={"name": "nodal-average", "relaxation": 1.0})
+    o, p = simulation.operations, simulation.particles
+    o.mean_speed = DX
+    p.volume_ratio[:] = np.random.default_rng(1).uniform(0.8, 0.95, len(p))
+    p.volume[:] = p.volume_ratio * p.initial_volume
+    start = p.volume_ratio.copy()
+    o.average_at_nodes(p.volume_ratio, p.initial_volume)
+    mean = o.average_at_particles()
+    for _ in range(4):
+        o.relax_volume(0.012)
+        np.testing.assert_array_equal(p.volume_ratio, start)
+    o.relax_volume(0.012)
+    np.testing.assert_allclose(p.volume_ratio, start + (1 - np.exp(-0.06)) * (mean - start), rtol=1e-12)
+
+
+def test_of_a_box_counts_what_is_within_a_cell():
+    volume, half_size, within = np.array([2.0, 2.0]), np.array([[0.04, 0.1], [0.2, 0.1]]), np.empty(2)
+    volume_within_reach(volume, half_size, DX, within)
+    assert within == pytest.approx([2.0 * 0.5, 2.0 * 0.25 * 0.5])
