@@ -58,7 +58,7 @@ class SceneOperations:
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
         self._rate = np.zeros(n)
-        self._mapped = False
+        self._stepped = False
         self._no_rows = np.zeros((0, dim))
 
     # --- The frame of a step
@@ -97,6 +97,7 @@ class SceneOperations:
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
         self.scheme.order.step(self, dt)
+        self._stepped = True
 
     # --- Particles to nodes
 
@@ -104,7 +105,6 @@ class SceneOperations:
         reach = self.layout.reach
         nodes.clear(self.window.nodes, reach.rows, reach.tasks)
         self._map(momentum=True, forces=forces)
-        self._mapped = True
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
         nodes.momentum_to_velocity(self.window.nodes, *reach.arguments, self.grid.friction)
 
@@ -135,7 +135,7 @@ class SceneOperations:
     @property
     def mapped_mass(self) -> float | None:
         """Mass that the nodes got in the last step, kg; None where there was none since they were made."""
-        return float(self.window.nodes[:, 0].sum()) if self._mapped else None
+        return float(self.window.nodes[:, 0].sum()) if self._stepped else None
 
     def solve_momentum(self, dt: float) -> None:
         nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
