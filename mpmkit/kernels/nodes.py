@@ -172,13 +172,16 @@ def _touch(node, dim, a, inward, coefficient, solved):
 
 
 @kernel()
-def find_crowding(pairs, room, crowding, rows, tasks, faces, mirrors, face_first):
-    """max(1, Σ w / room) at every node but ghosts, which count to their images. Leaves ``pairs`` empty."""
+def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, face_first):
+    """Σ w / room, from 1 to ``most``, at all nodes but ghosts, which count to their images.
+
+    Leaves ``pairs`` empty.
+    """
     fold(pairs, faces, mirrors, face_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
-                crowding[i] = max(1.0, pairs[i, 0] / room[i])
+                crowding[i] = min(max(1.0, pairs[i, 0] / room[i]), most)
                 pairs[i, 0] = pairs[i, 1] = 0.0
 
 

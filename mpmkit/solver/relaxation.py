@@ -20,6 +20,9 @@ WORTH = 0.05
 average costs a tenth of a step."""
 CROWDED = 0.02
 """Part by which a node may be too full before it counts: boxes do not quite tile what they fill."""
+MOST = 1.02
+"""Crowding that counts at most. A per cent or two has the pressure of the flow itself, ρ v² at a Mach number
+of 0.1; more, where boxes lie over each other for whatever reason, would throw them apart."""
 
 
 class Relaxation:
@@ -32,11 +35,11 @@ class Relaxation:
 
     Where a node has more material on it than room, J is drawn to the average over the crowding κ instead,
 
-        κ = max(1, Σ V_p N_np / V_n),
+        κ = Σ V_p N_np / ((1 + CROWDED) V_n),   from 1 to MOST,
 
-    the volume there is: particles have come too close, whatever their rates say that they have done. Of V_p
-    counts what is within reach of the weights, so that boxes drawn out longer than a cell, between which
-    material is torn, crowd nothing; boxes that stay as they are tell nothing.
+    towards the volume there is: particles have come too close, whatever their rates say that they have done.
+    Of V_p counts what is within reach of the weights, so that boxes drawn out longer than a cell, between
+    which material is torn, crowd nothing; boxes that stay as they are tell nothing.
 
     Attributes:
         due: the integral so far.
@@ -77,7 +80,7 @@ def find_crowding(operations: SceneOperations) -> np.ndarray | None:
     operations.sum_at_nodes(within, within)
     room = (1 + CROWDED) * node_volumes(window, operations.radial)
     crowding = np.ones(len(room))
-    nodes.find_crowding(window.pairs, room, crowding, *operations.layout.reach.arguments)
+    nodes.find_crowding(window.pairs, room, MOST, crowding, *operations.layout.reach.arguments)
     return crowding
 
 

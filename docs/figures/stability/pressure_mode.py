@@ -23,8 +23,8 @@ GROWS = 5.0
 """Cells crossed in which the unseen part of J grows freely."""
 TANK_COLOURS = (
     *(BLACK, VERMILION, GREEN, BLUE),
-    *(PURPLE, ORANGE, SKY, GREEN, BLACK, VERMILION),
-    *(SKY, BLUE, ORANGE, VERMILION, GREEN),
+    *(PURPLE, ORANGE, SKY, GREEN, VERMILION),
+    *(BLACK, BLUE, ORANGE, VERMILION, GREEN),
 )
 
 

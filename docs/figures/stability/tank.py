@@ -25,7 +25,6 @@ TANKS: dict[str, tuple[dict, str, dict]] = {
     "relaxation 0, splitting": ({"splitting": True, "volumetric": AVERAGED | {"relaxation": 0.0}}, "--", {}),
     "relaxation 1, splitting": ({"splitting": True}, "--", {}),
     "relaxation 1, half the cell": ({}, ":", {"cells": 20}),
-    "relaxation 1, half the cell, splitting": ({"splitting": True}, ":", {"cells": 20}),
     "relaxation 1, fixed boxes": ({"shape": {"name": "cpgimp", "domain": "fixed"}}, "--", {}),
     "relaxation 1, at rest": ({}, ":", {"amplitude": 0.0}),
     "relaxation 1, 10 Pa s": ({}, "-.", {"law": WATER | {"viscosity": 10.0}}),
