@@ -297,7 +297,10 @@ def mutants(draw: st.DrawFn) -> dict[str, Any]:
             case "replace":
                 holder[path[-1]] = draw(junk())
             case "scale":
-                if isinstance(holder[path[-1]], float | int):
+                value = holder[path[-1]]
+                if (
+                    isinstance(value, float | int) and abs(value) < 1e300
+                ):  # Python multiplies no larger integers
                     holder[path[-1]] *= draw(
                         st.sampled_from([-1, 0, 1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12, 1e200])
                     )

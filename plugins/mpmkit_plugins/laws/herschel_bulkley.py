@@ -26,7 +26,7 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)
     consistency: float = quantity("Pa s^n", "consistency k", ge=0)
-    flow_index: float = quantity("1", "flow index n", gt=0)
+    flow_index: float = quantity("1", "flow index n", gt=0, le=10)
     regularisation: float = quantity("s", "Papanastasiou's exponent m", gt=0, default=1000.0)
 
     def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:

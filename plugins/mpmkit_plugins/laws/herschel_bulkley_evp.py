@@ -28,7 +28,7 @@ class HerschelBulkleyEVP(ElastoviscoplasticLaw):
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)
     consistency: float = quantity("Pa s^n", "consistency k", ge=0)
-    flow_index: float = quantity("1", "flow index n", gt=0)
+    flow_index: float = quantity("1", "flow index n", gt=0, le=10)
 
     def flow_curve(self, shear_rate: np.ndarray) -> np.ndarray:
         return self.yield_stress + self.consistency * shear_rate**self.flow_index
