@@ -11,10 +11,10 @@ import numba
 import psutil
 
 from mpmkit.bench import SCENES
-from mpmkit.bench.measure import timed
 from mpmkit.bench.midflow import in_mid_flow
+from mpmkit.bench.timing import timed
 from mpmkit.case import parse_case
-from mpmkit.memory import expected_bytes
+from mpmkit.solver.memory import expected_bytes
 from mpmkit.solver.simulation import Simulation
 
 ROUNDS = 5

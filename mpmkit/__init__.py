@@ -9,10 +9,10 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    __version__: str
     from .case import Case, load_case, parse_case
-    from .runner import run
+    from .running.runner import run
     from .solver.simulation import Simulation
+    from .version import __version__
 
 __all__ = ["Case", "Simulation", "__version__", "load_case", "parse_case", "run"]
 
@@ -20,27 +20,17 @@ _HOME = {
     "Case": "mpmkit.case",
     "load_case": "mpmkit.case",
     "parse_case": "mpmkit.case",
-    "run": "mpmkit.runner",
+    "run": "mpmkit.running.runner",
     "Simulation": "mpmkit.solver.simulation",
+    "__version__": "mpmkit.version",
 }
 
 
 def __getattr__(name: str) -> Any:
     # Loaded when asked for: a plug-in that imports mpmkit.contracts must not pull in the solver, and the
     # command line should have taken hold of Ctrl-C before anything takes its time.
-    if name == "__version__":
-        return _version()
     if name in _HOME:
         from importlib import import_module
 
         return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'mpmkit' has no attribute '{name}'")
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("mpmkit")
-    except PackageNotFoundError:  # a checkout that is not installed
-        return "0.0.0"

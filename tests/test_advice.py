@@ -10,13 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mpmkit.advice import cheaper_models, expected_error
 from mpmkit.case import load_case, parse_case
-from mpmkit.cautions import cautions
+from mpmkit.case.plugins import cautions
+from mpmkit.case.resolved import resolved
 from mpmkit.contracts import ElastoviscoplasticLaw
-from mpmkit.memory import expected_particles
-from mpmkit.plan import plan
-from mpmkit.provenance import resolved
+from mpmkit.plan import cheaper_models, expected_error, plan
+from mpmkit.solver.memory import expected_particles
 
 CASES = Path(__file__).parents[1] / "cases"
 ROUND = {"kind": "cylinder", "radius": 0.1, "height": 0.3, "base": [0.1, 0.2, 0.0]}
@@ -137,7 +136,7 @@ def test_where_there_is_nothing_to_save_there_is_no_advice():
 
 
 def rows():
-    with (files("mpmkit.advice") / "slump_errors.csv").open() as lines:
+    with (files("mpmkit.plan") / "slump_errors.csv").open() as lines:
         return list(csv.DictReader(lines))
 
 
@@ -204,8 +203,8 @@ def test_more_that_is_known_to_fail():
 
 
 def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
-    monkeypatch.setattr("mpmkit.plan.WORTH_ADVICE", 0.0)
-    monkeypatch.setattr("mpmkit.plan.TRIAL_SECONDS", 0.2)
+    monkeypatch.setattr("mpmkit.plan.cost.WORTH_ADVICE", 0.0)
+    monkeypatch.setattr("mpmkit.plan.cost.TRIAL_SECONDS", 0.2)
     cost = plan(scene(**{"grid.cell_size": 0.02, "grid.domain.z": [0, 0.36], "until": 0.2}), threads=1)
     lines = {line["name"]: line for line in cost["cheaper"]}
     assert {"a quarter", "axisymmetric", "exact yield", "all of these"} <= set(lines)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mpmkit.bench import SCENES
-from mpmkit.bench.measure import KERNELS, timed
 from mpmkit.bench.midflow import in_mid_flow
+from mpmkit.bench.timing import KERNELS, timed
 from mpmkit.cli import main
 from mpmkit.solver.simulation import Simulation
 

@@ -9,10 +9,10 @@ import pytest
 
 from mpmkit.case import case_schema, load_case, parse_case
 from mpmkit.case.allowed import Place
+from mpmkit.case.resolved import resolved
 from mpmkit.errors import CaseError
-from mpmkit.memory import require_memory
-from mpmkit.provenance import resolved
 from mpmkit.registry import installed
+from mpmkit.solver.memory import require_memory
 from mpmkit.solver.scene import make_particles
 
 CASES = sorted((Path(__file__).parent.parent / "cases").glob("*.json"))

@@ -13,12 +13,12 @@ import xarray
 
 import mpmkit
 from mpmkit.case import load_case, parse_case
-from mpmkit.case_files import named_files, portable
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, OutputError
 from mpmkit.geometry import Mesh, sample
 from mpmkit.report import write_report
-from mpmkit.runner import resume
+from mpmkit.running.case_files import named_files, portable
+from mpmkit.running.runner import resume
 from mpmkit.solver.simulation import Simulation
 from mpmkit.spaces import SPACES
 from mpmkit.study import execute, load_study, members_of

@@ -18,11 +18,11 @@ import pytest
 import xarray
 
 import mpmkit
-from mpmkit import resume as resume_module
 from mpmkit.case import load_case, parse_case
 from mpmkit.errors import CaseError
 from mpmkit.output.checkpoints import MAGIC, Checkpoints
-from mpmkit.runner import resume
+from mpmkit.running import resume as resume_module
+from mpmkit.running.runner import resume
 from mpmkit.solver.simulation import CONTROL_INTERVAL, Simulation
 from mpmkit.solver.state import restore, state_of
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import mpmkit
-from mpmkit.blame import blaming_plugins
+from mpmkit.case.plugins import plugins_of
 from mpmkit.contracts import ConstitutiveLaw, UpdateOrder, quantity
 from mpmkit.errors import GuardStop
 from mpmkit.registry import Registered, Registry, installed
+from mpmkit.registry.blame import blaming_plugins
 from mpmkit.solver.balance import CREATED
 from mpmkit.solver.simulation import CONTROL_INTERVAL
 
@@ -78,7 +79,7 @@ def stopped(simulation, guard, steps=3 * CONTROL_INTERVAL):
     """The sentence with which it stops, and the particle's place in the arrays."""
 
     def run():
-        with np.errstate(all="ignore"), blaming_plugins(simulation.case):
+        with np.errstate(all="ignore"), blaming_plugins(plugins_of(simulation.case)):
             for _ in range(steps):
                 simulation.advance()
             simulation.check()
@@ -252,7 +253,7 @@ def test_mass_that_weights_lose_is_the_shape_functions_fault():
     simulation.operations.map_to_grid()
     number = simulation.particles.number[4]
     said = rf"the plug-in 'cpgimp' \(shape.*gave particle {number} weights that sum to 0\.9801 and not to 1"
-    with pytest.raises(GuardStop, match=said), blaming_plugins(simulation.case):
+    with pytest.raises(GuardStop, match=said), blaming_plugins(plugins_of(simulation.case)):
         simulation.check()
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mpmkit.cli import main
-from mpmkit.scaffold import KINDS
+from mpmkit.registry.scaffold import KINDS
 
 ROOT = Path(__file__).parents[1]
 FILES = {"README.md", "case.json", "pyproject.toml", "src/mpmkit_my_own.py", "tests/test_my_own.py"}

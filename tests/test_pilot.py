@@ -8,9 +8,9 @@ import pytest
 
 import mpmkit
 from mpmkit.case import load_case
-from mpmkit.memory import expected_particles
-from mpmkit.pilot import FEW, coarser, pilot
 from mpmkit.plan import plan
+from mpmkit.plan.pilot import FEW, coarser, pilot
+from mpmkit.solver.memory import expected_particles
 from mpmkit.solver.simulation import Simulation
 
 CASES = Path(__file__).parent.parent / "cases"

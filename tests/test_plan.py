@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from mpmkit.case import load_case, parse_case
-from mpmkit.memory import PASSING, bytes_per_particle, expected_bytes, expected_particles, window_nodes
 from mpmkit.plan import plan
+from mpmkit.solver.memory import PASSING, bytes_per_particle, expected_bytes, expected_particles, window_nodes
 from mpmkit.solver.simulation import Simulation
 
 CASES = Path(__file__).parent.parent / "cases"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import mpmkit
-from mpmkit.blame import blaming_plugins
+from mpmkit.case.plugins import plugins_of
 from mpmkit.contracts import (
     ConstitutiveLaw,
     ElastoviscoplasticLaw,
@@ -23,6 +23,7 @@ from mpmkit.contracts import (
 )
 from mpmkit.errors import GuardStop
 from mpmkit.registry import Registered, Registry, installed
+from mpmkit.registry.blame import blaming_plugins
 
 FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 1.0, "sound_speed": 10.0}
 N = 64
@@ -54,7 +55,7 @@ def blamed(kind, plugin, steps=3):
     made = simulation(kind, plugin)
 
     def run():
-        with blaming_plugins(made.case, lambda: (made.steps, made.time)):
+        with blaming_plugins(plugins_of(made.case), lambda: (made.steps, made.time)):
             for _ in range(steps):
                 made.advance()
 
@@ -186,7 +187,7 @@ def test_a_largest_viscosity_that_is_no_number():
     made = simulation("law", Unknown)
     made.particles.velocity[:] = 1.0
     said = r"'of-the-tests'.*has a largest viscosity of nan"
-    with pytest.raises(GuardStop, match=said), blaming_plugins(made.case):
+    with pytest.raises(GuardStop, match=said), blaming_plugins(plugins_of(made.case)):
         made.choose_time_step()
 
 
@@ -305,7 +306,7 @@ def test_a_rehearsal_changes_nothing(monkeypatch):
     """To the bit, whether laws and shape functions are rehearsed in every step or hardly ever."""
     last = []
     for interval in (1, 10**9):
-        monkeypatch.setattr("mpmkit.solver.audit.INTERVAL", interval)
+        monkeypatch.setattr("mpmkit.registry.audit.INTERVAL", interval)
         made = mpmkit.Simulation(mpmkit.load_case("cases/slump_fast.json"))
         for _ in range(5):
             made.advance()

@@ -15,7 +15,7 @@ from mpmkit.kernels.compile import CHUNK
 from mpmkit.kernels.scatter import LARGEST_SUPPORT, PAIR, scatter_pairs
 from mpmkit.kernels.sort import BLOCK_WIDTH
 from mpmkit.registry import installed
-from mpmkit.solver.layout import DRIFT, TASKS
+from mpmkit.solver.sorting import DRIFT, TASKS
 
 SHAPES = installed().of_kind("shape")
 sizes = pytest.mark.parametrize("size", [(1, 1), (4, 3), (5, 2), (1, 1, 1), (3, 4, 5), (1, 7, 1)], ids=str)
@@ -186,7 +186,7 @@ def test_tasks_cut_the_blocks_of_every_colour_once(space):
     }
     simulation = mpmkit.Simulation(mpmkit.parse_case(case))
     simulation.operations.begin()
-    particles, tasks = simulation.particles, simulation.operations.layout.tasks
+    particles, tasks = simulation.particles, simulation.operations.sorting.tasks
     dim = particles.dim
     assert tasks.shape == (2, 2**dim, TASKS + 1)
     cell = (particles.position / 0.1).astype(int)

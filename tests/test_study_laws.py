@@ -7,8 +7,8 @@ import pytest
 from studies import CASE, study
 
 from mpmkit.registry import installed
+from mpmkit.rheology.refit import RATES, flow_curve, with_law
 from mpmkit.study import members_of
-from mpmkit.study.refit import RATES, flow_curve, with_law
 
 BINGHAM = {"law": "bingham", "yield_stress": 50.0, "plastic_viscosity": 20.0, "density": 2000.0}
 HERSCHEL_BULKLEY = {"law": "herschel-bulkley", "yield_stress": 50.0, "consistency": 20.0, "flow_index": 0.5}

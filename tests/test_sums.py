@@ -26,7 +26,7 @@ def test_sums_are_those_of_numpy(n, dim):
         (mass * (velocity @ along)).sum(), abs=1e-13 * mass.sum() * 10
     )
     expected = mass.sum(), (mass * square).sum(), square.max()
-    assert sums.motion(mass, velocity) == pytest.approx(expected, rel=1e-13)
+    assert sums.kinetics(mass, velocity) == pytest.approx(expected, rel=1e-13)
 
 
 def test_sums_have_the_same_bits_with_one_thread_and_with_all():
@@ -35,7 +35,11 @@ def test_sums_have_the_same_bits_with_one_thread_and_with_all():
     for threads in (1, numba.config.NUMBA_NUM_THREADS):
         numba.set_num_threads(threads)
         found.append(
-            (sums.product(mass, mass), sums.moment(mass, velocity, velocity[0]), *sums.motion(mass, velocity))
+            (
+                sums.product(mass, mass),
+                sums.moment(mass, velocity, velocity[0]),
+                *sums.kinetics(mass, velocity),
+            )
         )
     assert found[0] == found[1]
 
@@ -43,4 +47,4 @@ def test_sums_have_the_same_bits_with_one_thread_and_with_all():
 def test_a_speed_that_is_no_number_shows_in_the_sum():
     mass, velocity = particles(10, 3)
     velocity[4, 1] = np.nan
-    assert np.isnan(sums.motion(mass, velocity)[1])
+    assert np.isnan(sums.kinetics(mass, velocity)[1])

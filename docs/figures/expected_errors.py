@@ -1,4 +1,4 @@
-"""Write mpmkit/advice/slump_errors.csv, the errors that ``plan`` tells of cheaper models.
+"""Write mpmkit/plan/slump_errors.csv, the errors that ``plan`` tells of cheaper models.
 
     mpmkit study cases/studies/accuracy_vs_cost.json && python docs/figures/expected_errors.py
 
@@ -18,7 +18,7 @@ from common import DOCS, REFERENCE
 from mpmkit.case import parse_case
 from mpmkit.study.figures import members
 
-OUT = DOCS.parent / "mpmkit/advice/slump_errors.csv"
+OUT = DOCS.parent / "mpmkit/plan/slump_errors.csv"
 SOUND = {"Mach 0.1": "mach 0.1", "c = 10": "factor 10", "c = 20": "factor 20"}
 
 

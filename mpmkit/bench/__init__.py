@@ -1,6 +1,6 @@
 """How fast this machine is: the standard scenes, in mid-flow, timed as a whole and operation by operation."""
 
-from .measure import Timing, measure
 from .scenes import SCENES, BenchScene
+from .timing import Timing, time_scene
 
-__all__ = ["SCENES", "BenchScene", "Timing", "measure"]
+__all__ = ["SCENES", "BenchScene", "Timing", "time_scene"]

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .allowed import nearest, shown
+from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
-
-if TYPE_CHECKING:
-    from .model import Case, Material
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""

@@ -14,8 +14,9 @@ from ..errors import CaseError
 from ..geometry import FILES
 from ..registry import Registry, installed
 from .allowed import shown
+from .composed import case_model
 from .messages import explain
-from .model import Case, case_model
+from .model import Case
 from .overrides import apply_overrides
 from .strict_json import NESTED, decode, require_finite
 

@@ -1,18 +1,16 @@
 """The case: a scene, its materials and the schemes that solve it, as pydantic models.
 
-The models of the schemes and the materials are made from the registered plug-ins, so that a third party's
-parameters are validated, documented and completed in an editor exactly as the built-in ones.
+What depends on the plug-ins that are registered is filled in by ``composed``.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property, lru_cache, reduce
-from operator import or_
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, create_model, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
@@ -20,7 +18,6 @@ from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
-from ..registry import Registry
 from ..spaces import SPACES, Space
 from .base import Model
 from .output import OutputSettings
@@ -118,6 +115,15 @@ class Body(Model):
         "m/s", "initial velocity along each axis, or a standing wave; at rest unless told", default=None
     )
 
+    def particles_along_axes(self, dim: int) -> tuple[int, ...]:
+        """Particles along each axis of a full cell."""
+        given = self.particles_per_cell
+        if given is None:
+            return (2,) * dim
+        if isinstance(given, list):
+            return tuple(given)
+        return (round(given ** (1 / dim)),) * dim
+
     @property
     def largest_speed(self) -> float:
         """Bound of the initial speed, m/s."""
@@ -178,6 +184,12 @@ class Case(Model):
         return SPACES[self.space]
 
     @cached_property
+    def domain_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner of the domain, m; a symmetry plane keeps the part of a body inside."""
+        ends = np.array([self.grid.domain[axis] for axis in self.space_.axes])
+        return ends[:, 0], ends[:, 1]
+
+    @cached_property
     def gravity_vector(self) -> np.ndarray:
         """Acceleration of gravity, m/s², ``(dim,)``."""
         if self.gravity is not None:
@@ -208,67 +220,3 @@ class Case(Model):
         if isinstance(speed, SoundSpeedMach):
             return math.sqrt(2 * self.largest_energy) / speed.mach
         return speed
-
-    @model_validator(mode="after")
-    def _fits_together(self) -> Case:
-        from .consistency import check  # the rules that span several fields, apart from the fields
-
-        check(self)
-        return self
-
-
-def _one_of(members: dict[str, type], key: str) -> Any:
-    """Annotation of a field that holds one of several models, told apart by the constant at ``key``."""
-
-    def tag(value: Any) -> Any:
-        if isinstance(value, dict):
-            return value.get(key)
-        return value if isinstance(value, str) else getattr(value, key, None)
-
-    if not members:  # every one of them is broken or refused: only a case that is read fails of it
-        return Literal["none is installed"]
-    return Annotated[
-        reduce(or_, [Annotated[cls, Tag(name)] for name, cls in members.items()]), Discriminator(tag)
-    ]
-
-
-def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
-    """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
-    preset = Field(default=default, validate_default=True) if default in plugins else ...
-    return _one_of(plugins, "name"), preset
-
-
-def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
-    own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
-    base = type("Material", (Material,), {"law_class": law, "__module__": __name__})
-    return create_model(
-        f"Material_{law.__name__}",
-        __base__=base,
-        __doc__=law.__doc__,
-        law=(Literal[law.name], ...),
-        equation_of_state=_choice(registry.of_kind("equation_of_state"), "linear"),
-        **own_fields,  # type: ignore[call-overload]
-    )
-
-
-@lru_cache(maxsize=4)
-def case_model(registry: Registry) -> type[Case]:
-    """The model of case files for the plug-ins that are registered."""
-    laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
-    body = create_model("Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of(laws, "law"), ...))
-    scheme = create_model(
-        "Scheme",
-        __base__=Scheme,
-        __doc__=Scheme.__doc__,
-        shape=_choice(registry.of_kind("shape"), "cpgimp"),
-        order=_choice(registry.of_kind("order"), "usl"),
-        velocity=_choice(registry.of_kind("velocity"), "apic"),
-        volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
-    )
-    return create_model(
-        "Case",
-        __base__=Case,
-        __doc__=Case.__doc__,
-        bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
-        scheme=(scheme, Field(default={}, validate_default=True)),
-    )

@@ -8,6 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ..contracts import quantity
 
+ROWS, FRAMES = 400, 20
+"""Rows and frames of a run whose case does not say how often."""
+
 
 class OutputSettings(BaseModel):
     """Intervals and contents of the history and the frames."""

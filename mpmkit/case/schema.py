@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..registry import Registry
-from .model import case_model
+from .composed import case_model
 
 
 def case_schema(registry: Registry) -> dict[str, Any]:

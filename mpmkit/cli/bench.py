@@ -19,7 +19,7 @@ SECONDS = 5.0
 @options.as_json
 def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_json: bool) -> None:
     """Time full steps of the standard scenes in mid-flow, kernel by kernel; all of them unless named."""
-    from ..bench import SCENES, measure
+    from ..bench import SCENES, time_scene
     from ..errors import CaseError
 
     for name in scenes:
@@ -27,7 +27,7 @@ def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_jso
             raise CaseError(f"scene is '{name}'; it must be one of {', '.join(SCENES)}")
     timings = []
     for name in scenes or SCENES:
-        timing = measure(SCENES[name], threads, seconds)
+        timing = time_scene(SCENES[name], threads, seconds)
         timings.append(timing.as_dict())
         if not as_json:
             click.echo(_table(SCENES[name].description, timings[-1]))

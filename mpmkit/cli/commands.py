@@ -10,22 +10,9 @@ from contextlib import suppress
 
 import click
 
-from .. import __version__
 from ..errors import MpmkitError, OutputError
-from . import (
-    bench,
-    chart,
-    compare,
-    new_plugin,
-    options,
-    plan,
-    plugins,
-    rerun,
-    run,
-    schema,
-    stability,
-    study,
-)
+from ..version import __version__
+from . import bench, chart, compare, new_plugin, options, plan, plugins, rerun, run, schema, stability, study
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)

@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 from .duration import duration
 
 if TYPE_CHECKING:
-    from .. import runner
+    from ..running import runner
 
 LOGGER = logging.getLogger("mpmkit")
 LINE_INTERVAL = 30.0

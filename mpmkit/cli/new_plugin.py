@@ -15,7 +15,7 @@ import click
 @click.option("--out", type=click.Path(), metavar="DIR", help="Directory to make; mpmkit-NAME unless told.")
 def command(name: str, kind: str, out: str | None) -> None:
     """Write a distribution for a new plug-in NAME, with tests that it passes, to be made one's own."""
-    from ..scaffold import new_plugin
+    from ..registry.scaffold import new_plugin
 
     directory = new_plugin(name, kind, None if out is None else Path(out))
     click.echo(f"wrote {directory}; next: cd '{directory}' && pip install -e '.[test]' && pytest")

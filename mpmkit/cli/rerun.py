@@ -21,8 +21,8 @@ def command(directory: str, out: str | None, threads: int | None, overwrite: boo
 
     The exit status is 1 where it does not.
     """
-    from ..rerun import first_difference, history_of, made_differently
-    from ..resume import case_of
+    from ..running.rerun import first_difference, history_of, made_differently
+    from ..running.resume import case_of
     from .run import perform
 
     path = Path(directory)

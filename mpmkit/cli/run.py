@@ -70,7 +70,7 @@ def perform(
     """Run or go on in a directory, and show what a person wants to see of it."""
     import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
 
-    from ..runner import resume, run
+    from ..running.runner import resume, run
 
     def go(listen: Any) -> None:
         if resumed:

@@ -11,6 +11,11 @@ import numpy as np
 
 from .base import Plugin
 
+LEAST_RATIO, MOST_RATIO = 0.1, 10.0
+"""Volume ratios between which a run is sound, and which a law must bear. At a Mach number of 0.1 that of a
+fluid is within a hundredth of 1; no law here is meant for a solid that is a tenth, or ten times, as large as
+it was."""
+
 
 @dataclass(frozen=True)
 class StateVariable:

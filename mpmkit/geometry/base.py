@@ -68,14 +68,14 @@ class Shape(BaseModel):
         inside = self._contains(points, space, tolerance)
         return inside & (points[:, 0] >= -tolerance) if space.radial else inside
 
-    def measure(self, space: Space) -> float:
+    def size(self, space: Space) -> float:
         """Size in the coordinates of the space: m³ in 3-D, else m² of the (half) cross-section.
 
         Raises:
             CaseError: the space cannot hold the shape.
         """
         self._require(space)
-        return float(self._measure(space))
+        return float(self._size(space))
 
     def volume(self, space: Space) -> float:
         """Exact volume, m³: of the full circle if axisymmetric, of 1 m of thickness in plane strain.
@@ -145,7 +145,7 @@ class Shape(BaseModel):
     def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray: ...
 
     @abstractmethod
-    def _measure(self, space: Space) -> float: ...
+    def _size(self, space: Space) -> float: ...
 
     @abstractmethod
     def _volume(self, space: Space) -> float: ...

@@ -54,9 +54,9 @@ class Box(Shape):
             inside &= points[:, axis] <= high + tolerance
         return inside
 
-    def _measure(self, space: Space) -> float:
+    def _size(self, space: Space) -> float:
         return math.prod(high - low for low, high in zip(self.lower, self.upper, strict=True))
 
     def _volume(self, space: Space) -> float:
         # π (r₁² − r₀²) h = 2π · mean radius · area, without the cancellation of the squares of a thin ring.
-        return self._measure(space) * (math.pi * (self.lower[0] + self.upper[0]) if space.radial else 1.0)
+        return self._size(space) * (math.pi * (self.lower[0] + self.upper[0]) if space.radial else 1.0)

@@ -9,9 +9,9 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from ..content_names import name_by_content
 from ..contracts.base import quantity
 from ..errors import CaseError
+from ..output.content_names import name_by_content
 from ..spaces import Space
 from .base import Shape
 from .mesh_file import as_ply, read_surface
@@ -88,7 +88,7 @@ class Mesh(Shape):
         distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
         return inside | (distance <= tolerance)  # farther away the distance is nan
 
-    def _measure(self, space: Space) -> float:
+    def _size(self, space: Space) -> float:
         return self._volume(space)
 
     def _volume(self, space: Space) -> float:

@@ -95,7 +95,7 @@ def expected_count(
 ) -> float:
     """Estimate of the number of particles, from exact sizes and without making any.
 
-    It is the shape's measure over that of a particle. With ``keep`` it is multiplied by the part of the box
+    It is the shape's size over that of a particle. With ``keep`` it is multiplied by the part of the box
     around the shape that is kept; that is exact for boxes and for cuts through planes of symmetry, and a
     rough estimate for others.
 
@@ -109,7 +109,7 @@ def expected_count(
     Raises:
         CaseError: the space cannot hold the shape.
     """
-    count = shape.measure(space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
+    count = shape.size(space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
     if keep is not None:
         lower, upper = shape.bounds(space)
         left = np.minimum(upper, keep[1]) - np.maximum(lower, keep[0])

@@ -36,7 +36,7 @@ class Sphere(Shape):
     def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
         return squared_distance(points, self.centre) <= (self.radius + tolerance) ** 2
 
-    def _measure(self, space: Space) -> float:
+    def _size(self, space: Space) -> float:
         if space.dim == 3:
             return self._volume(space)
         return disc_area(self.radius) / (2 if space.radial else 1)

@@ -57,7 +57,7 @@ class Upright(Shape):
         )
         return inside & (squared_distance(points, middle) <= radius * radius)
 
-    def _measure(self, space: Space) -> float:
+    def _size(self, space: Space) -> float:
         if space.dim == 3:
             return self._volume(space)
         width = sum(self._radii())
@@ -65,6 +65,6 @@ class Upright(Shape):
 
     def _volume(self, space: Space) -> float:
         if space.dim == 2 and not space.radial:
-            return self._measure(space)
+            return self._size(space)
         bottom, top = self._radii()
         return math.pi * self.height / 3 * (bottom**2 + bottom * top + top**2)

@@ -49,7 +49,7 @@ def moment(mass, vectors, along):
 
 
 @kernel()
-def motion(mass, velocity):
+def kinetics(mass, velocity):
     """Σ m, Σ m v² and the largest v², of ``(n,)`` and ``(n, dim)``."""
     n, dim = velocity.shape
     chunks = chunk_count(n)

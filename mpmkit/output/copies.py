@@ -6,9 +6,9 @@ from collections.abc import Container, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from ..content_names import is_name_by_content, name_by_content
 from ..errors import CaseError, reason
 from .atomic import replacing
+from .content_names import is_name_by_content, name_by_content
 
 
 class Copies:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..kernels import sums
-from .audit import require_shape
+from ..registry.audit import require_shape
 from .particles import Particles
 
 
 def kinetic_energy(p: Particles) -> float:
     """½ Σ m v², of the particles' own velocities, without what an affine part adds within each."""
-    return 0.5 * float(sums.motion(p.mass, p.velocity)[1])
+    return 0.5 * float(sums.kinetics(p.mass, p.velocity)[1])
 
 
 def strain_energy(p: Particles) -> float:

@@ -92,7 +92,7 @@ class Window:
     _capacity: int = field(init=False, default=0)
     _stores: list[np.ndarray] = field(init=False)
 
-    def reach(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def touchable(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """First and last node along each axis that particles in these cells, ``(..., dim)``, can touch.
 
         A particle's box reaches at most half a cell beyond its own cell. Where the image of a ghost is
@@ -108,7 +108,7 @@ class Window:
         """Lay the window over the nodes that particles in these cells can touch; all are zero."""
         grid = self.grid
         contacts = self._contacts()
-        low, high = self.reach(lowest_cell, highest_cell)
+        low, high = self.touchable(lowest_cell, highest_cell)
         size = [int(n) for n in high - low + 1]
         size[-1] += 2  # rows of pairs are as wide as a vector: they reach beyond what a particle touches
         size += [1] * (3 - grid.dim)

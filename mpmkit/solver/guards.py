@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
+from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
 from .balance import EnergyBalance
-from .particles import LEAST_RATIO, MOST_RATIO
 from .time_step import warnings
-
-if TYPE_CHECKING:
-    from .simulation import Simulation
+from .view import SceneView
 
 COLLAPSED = 1e-4
 """Part of the longest step so far below which it has collapsed: a run that took a minute now takes a week."""
@@ -23,23 +21,23 @@ DRIFT = 1e-9
 
 
 class Guards:
-    """Looks at a simulation every few steps, and stops it where it is beyond saving.
+    """Looks at a scene every few steps, and stops it where it is beyond saving.
 
     Attributes:
         watches_energy: set it to False where something beside gravity does work, such as forces that a
             program adds to the nodes; a law that does work of its own says so itself (``passive``).
     """
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
+    def __init__(self, scene: SceneView) -> None:
+        self._scene = scene
         self._mass: float | None = None
         self._longest_step = 0.0
-        self.watches_energy = all(group.law.passive for group in simulation.particles.groups)
+        self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
 
     def begin(self) -> None:
-        """Take mass and energy of the state in which the simulation begins, or goes on."""
-        s = self._simulation
+        """Take mass and energy of the state in which the scene begins, or goes on."""
+        s = self._scene
         if self._mass is None:
             self._mass = float(np.sum(s.particles.mass))
             if self.watches_energy:
@@ -52,26 +50,26 @@ class Guards:
             PluginFault: mass got lost because a shape function's weights do not sum to one.
         """
         self.begin()
-        p = self._simulation.particles
+        p = self._scene.particles
         firsts = np.empty(len(p) // CHUNK + 1, dtype=np.int64)
         state = p.position, p.velocity, p.stress, p.pressure, p.volume_ratio
         unsound = first_unsound(*state, LEAST_RATIO, MOST_RATIO, firsts)
         if unsound >= 0:
-            stop(self._simulation, int(unsound))
+            stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
-            self.balance.update(p, self._simulation.time)
+            self.balance.update(p, self._scene.time)
             if self.watches_energy and self.balance.broken:
                 self._stop_of_energy(self.balance)
 
     def accept_changes(self) -> None:
         """To be called where splitting, or a sound speed that follows the flow, has changed energies."""
         if self.balance is not None:
-            self.balance.accept(self._simulation.particles)
+            self.balance.accept(self._scene.particles)
 
     def check_step(self) -> None:
         """Raise GuardStop if the step that was chosen is none, or far shorter than it once was."""
-        s = self._simulation
+        s = self._scene
         step = s.time_step
         if not step > COLLAPSED * self._longest_step or not s.time + step > s.time:
             fastest = _fastest(s)
@@ -85,7 +83,7 @@ class Guards:
         self._longest_step = max(self._longest_step, step)
 
     def _check_mass(self) -> None:
-        s, p = self._simulation, self._simulation.particles
+        s, p = self._scene, self._scene.particles
         mass = float(np.sum(p.mass))
         assert self._mass is not None
         if not abs(mass - self._mass) <= DRIFT * self._mass:
@@ -99,9 +97,9 @@ class Guards:
             raise _stopped(
                 s, "mass-drift", worst, what, "something writes to their masses; try it --no-plugins"
             )
-        mapped = s.operations.mapped_mass
+        mapped = s.mapped_mass
         if mapped is not None and not abs(mapped - mass) <= DRIFT * mass:
-            total = np.prod(s.operations.weight.sum(axis=-1), axis=1)
+            total = s.sum_of_weights()
             worst = int(np.argmax(np.abs(total - 1)))
             if not abs(total[worst] - 1) <= DRIFT:
                 what = f"gave particle {p.number[worst]} weights that sum to {total[worst]:.9g} and not to 1"
@@ -111,7 +109,7 @@ class Guards:
             raise _stopped(s, "mass-drift", worst, what, order)
 
     def _stop_of_energy(self, balance: EnergyBalance) -> NoReturn:
-        s = self._simulation
+        s = self._scene
         fastest = _fastest(s)
         speed = float(np.linalg.norm(s.particles.velocity[fastest]))
         what = (
@@ -121,7 +119,7 @@ class Guards:
         raise _stopped(s, "energy", fastest, what, remedy(s))
 
 
-def stop(s: Simulation, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
+def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
     """Raise the GuardStop that fits what has become of a particle."""
     p, axes = s.particles, s.grid.axes
     position = p.position[index] + s.grid.lower
@@ -153,7 +151,7 @@ def stop(s: Simulation, index: int, scattered: bool = False, drawn_out: bool = F
     raise _stopped(s, guard, index, what, why)
 
 
-def remedy(s: Simulation) -> str:
+def remedy(s: SceneView) -> str:
     """The likeliest cause of a run that diverges, and what to try."""
     scheme = s.case.scheme
     exceeded = warnings(scheme, s.limits, s.time_step)
@@ -166,11 +164,11 @@ def remedy(s: Simulation) -> str:
     return f"likely the step is too long: reduce scheme.time_step.fraction, which is {fraction:g}"
 
 
-def _fastest(s: Simulation) -> int:
+def _fastest(s: SceneView) -> int:
     return int(np.argmax(np.einsum("pi,pi->p", s.particles.velocity, s.particles.velocity)))
 
 
-def _stopped(s: Simulation, guard: str, index: int, what: str, why: str) -> GuardStop:
+def _stopped(s: SceneView, guard: str, index: int, what: str, why: str) -> GuardStop:
     number = int(s.particles.number[index])
     sentence = f"stopped at step {s.steps}, t = {s.time:.6g} s: particle {number} {what}; {why}"
     return GuardStop(guard, sentence, step=s.steps, particle=number)

@@ -10,13 +10,14 @@ from ..case.model import Scheme
 from ..contracts.operations import Measure
 from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
-from ..kernels.gather import gather, gather_scalar
-from ..kernels.scatter import scatter, scatter_pairs
-from . import audit
+from ..kernels.gather import gather
+from ..kernels.scatter import scatter
+from ..registry import audit
+from .averager import Averager
 from .grid import Grid, Window
-from .layout import Layout
 from .particles import Group, Particles
 from .relaxation import Relaxation
+from .sorting import Sorting
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
@@ -38,10 +39,9 @@ class SceneOperations:
         self.window = Window(grid)
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
-        self.relaxation = Relaxation()
+        self.relaxation = Relaxation(scheme, radial)
         support = scheme.shape.support
-        self._scatter, self._scatter_pairs = scatter(dim, support), scatter_pairs(dim, support)
-        self._gather, self._gather_scalar = gather(dim, support), gather_scalar(dim, support)
+        self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
         self._begun = 0
         self._auditing = True
@@ -50,13 +50,14 @@ class SceneOperations:
     def allocate(self) -> None:
         """Tables and scratch for as many particles as there are; to be called again when there are more."""
         n, dim, support = len(self.particles), self.grid.dim, self.scheme.shape.support
-        self.layout = Layout(self.grid, self.particles, self.window)
+        self.sorting = Sorting(self.grid, self.particles, self.window)
         self.base = np.zeros((n, dim), dtype=np.int32)
         # One block of memory, so that what a sort needs for a moment can lie where the tables will be again.
         size = n * dim * support
         self._tables = np.zeros(max(2 * size, n * WIDEST))
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
+        self.averager = Averager(self.particles, self.window, self.sorting, self.base, self.weight)
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
@@ -74,7 +75,7 @@ class SceneOperations:
         return lost
 
     def _sort(self) -> int | None:
-        return self.layout.refresh(self.base, self._tables)
+        return self.sorting.refresh(self.base, self._tables)
 
     def _evaluate_shapes(self) -> None:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
@@ -102,11 +103,11 @@ class SceneOperations:
     # --- Particles to nodes
 
     def map_to_grid(self, *, forces: bool = True) -> None:
-        reach = self.layout.reach
-        nodes.clear(self.window.nodes, reach.rows, reach.tasks)
+        active = self.sorting.active
+        nodes.clear(self.window.nodes, active.rows, active.tasks)
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
-        nodes.momentum_to_velocity(self.window.nodes, *reach.arguments, self.grid.friction)
+        nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
@@ -121,14 +122,14 @@ class SceneOperations:
         if forces:
             volumes.assign(p.mapped_pressure, self._treated(p.pressure))
         self._scatter(
-            w.nodes, w.strides, w.lower, self.layout.tasks, self.base, self.weight, self.gradient, self.hoop,
+            w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
             p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
             self.cell_size, momentum, forces,
         )  # fmt: skip
 
     def _fold(self, first: int, last: int) -> None:
-        reach = self.layout.reach
-        nodes.fold(self.window.nodes, reach.faces, reach.mirrors, reach.face_first, first, last, True)
+        active = self.sorting.active
+        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.face_first, first, last, True)
 
     # --- Nodes
 
@@ -138,7 +139,7 @@ class SceneOperations:
         return float(self.window.nodes[:, 0].sum()) if self._stepped else None
 
     def solve_momentum(self, dt: float) -> None:
-        nodes.solve_momentum(self.window.nodes, *self.layout.reach.arguments, self.grid.friction, dt)
+        nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
 
     # --- Nodes to particles
 
@@ -184,7 +185,7 @@ class SceneOperations:
     def _update_law(self, group: Group, dt: float) -> None:
         p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
         if self._rehearsing:
-            audit.rehearse_law(p, group, dt)
+            audit.rehearse_law(group.law, motion, group.state, stress, dt, p.number[group.part])
         group.law.update_stress(motion, group.state, dt, stress)
         if self._auditing:
             audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
@@ -236,43 +237,23 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        self.relaxation.advance(self, dt)
+        self.relaxation.relax(self.averager, self.scheme.volumetric.relaxation_rate(self), dt)
 
     # --- Fields in general
 
     def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.average_at_nodes(values, self._measure(measure))
-        return self.average_at_particles()
+        self.averager.at_nodes(values, self._weights(measure))
+        return self.averager.at_particles()
 
     def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.average_at_nodes(values, self._measure(measure))
+        self.averager.at_nodes(values, self._weights(measure))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         self.window.average[:, 0] = nodal
-        return self.average_at_particles()
+        return self.averager.at_particles()
 
-    def sum_at_nodes(self, values: np.ndarray, weight: np.ndarray) -> None:
-        """Σ w N and Σ w N f into ``window.pairs``, which must be empty."""
-        w, tables = self.window, (self.base, self.weight)
-        self._scatter_pairs(w.pairs, w.strides, w.lower, self.layout.tasks, *tables, weight, values)
-
-    def average_at_nodes(
-        self, values: np.ndarray, weight: np.ndarray, crowding: np.ndarray | None = None
-    ) -> None:
-        """Σ w N f / Σ w N, over the crowding if any, into ``window.average``; zero where nothing is."""
-        w = self.window
-        self.sum_at_nodes(values, weight)
-        if crowding is not None:
-            nodes.relieve_pairs(w.pairs, crowding, *self.layout.reach.arguments)
-        nodes.divide_pairs(w.pairs, w.average, *self.layout.reach.arguments)
-
-    def average_at_particles(self) -> np.ndarray:
-        w, out = self.window, np.empty(len(self.particles))
-        self._gather_scalar(w.average, w.strides, w.lower, self.base, self.weight, out)
-        return out
-
-    def _measure(self, name: Measure) -> np.ndarray:
+    def _weights(self, name: Measure) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
         measure = p.mass if name == "mass" else p.volume

@@ -9,10 +9,6 @@ import numpy as np
 from ..contracts import ConstitutiveLaw, EquationOfState, Motion
 from ..kernels.sort import permute
 
-LEAST_RATIO, MOST_RATIO = 0.1, 10.0
-"""Volume ratios between which a run is sound. At a Mach number of 0.1 that of a fluid is within a hundredth
-of 1; no law here is meant for a solid that is a tenth, or ten times, as large as it was."""
-
 
 @dataclass
 class Group:

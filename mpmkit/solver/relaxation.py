@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..case.model import Scheme
 from ..errors import PluginFault
 from ..kernels import domains, nodes, volumes
+from .averager import Averager
 from .node_volumes import node_volumes
-from .particles import Group
-
-if TYPE_CHECKING:
-    from .operations import SceneOperations
+from .particles import Group, Particles
 
 WORTH = 0.05
 """Part of the departures of J that is due to go before any goes: so little may as well go at once, and to
@@ -45,48 +43,47 @@ class Relaxation:
         due: the integral so far.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, scheme: Scheme, radial: bool) -> None:
         self.due = 0.0
+        self._treatment = scheme.volumetric
+        self._boxes_tell = scheme.shape.particle_domain != "fixed"
+        self._radial = radial
 
-    def advance(self, operations: SceneOperations, dt: float) -> None:
-        """Go on by a step.
+    def relax(self, averager: Averager, rate: float, dt: float) -> None:
+        """Go on by a step, at the rate, 1/s, that the treatment asks for.
 
         Raises:
-            PluginFault: the treatment's rate is none.
+            PluginFault: the rate is none.
         """
-        treatment, p = operations.scheme.volumetric, operations.particles
-        rate = treatment.relaxation_rate(operations)
         if not rate >= 0:
-            raise PluginFault(treatment, f"has a relaxation rate of {rate} /s; it must be positive")
+            raise PluginFault(self._treatment, f"has a relaxation rate of {rate} /s; it must be positive")
         self.due += rate * dt
         if self.due < WORTH:
             return
         part, self.due = -math.expm1(-self.due), 0.0
-        crowding = find_crowding(operations)
+        p = averager.particles
+        crowding = find_crowding(averager, self._radial) if self._boxes_tell else None
         for group in p.groups:
             if group.law.uses_equation_of_state:
-                operations.average_at_nodes(p.volume_ratio, _only(operations, group), crowding)
-                mean = operations.average_at_particles()
+                averager.at_nodes(p.volume_ratio, _only(p, group), crowding)
+                mean = averager.at_particles()
                 volumes.draw(p.volume_ratio[group.part], mean[group.part], part)
 
 
-def find_crowding(operations: SceneOperations) -> np.ndarray | None:
-    """κ of every node of the window, ``(nodes,)``; None where boxes do not tell."""
-    if operations.scheme.shape.particle_domain == "fixed":
-        return None
-    p, window = operations.particles, operations.window
+def find_crowding(averager: Averager, radial: bool) -> np.ndarray:
+    """κ of every node of the window, ``(nodes,)``, for boxes that follow the material."""
+    p, window = averager.particles, averager.window
     within = np.empty(len(p))
-    domains.volume_within_reach(p.volume, p.half_size, operations.cell_size, within)
-    operations.sum_at_nodes(within, within)
-    room = (1 + CROWDED) * node_volumes(window, operations.radial)
+    domains.volume_within_reach(p.volume, p.half_size, window.grid.cell_size, within)
+    averager.sums(within, within)
+    room = (1 + CROWDED) * node_volumes(window, radial)
     crowding = np.ones(len(room))
-    nodes.find_crowding(window.pairs, room, MOST, crowding, *operations.layout.reach.arguments)
+    nodes.find_crowding(window.pairs, room, MOST, crowding, *averager.sorting.active.arguments)
     return crowding
 
 
-def _only(operations: SceneOperations, group: Group) -> np.ndarray:
+def _only(p: Particles, group: Group) -> np.ndarray:
     """Initial volumes of a material, zero for the others."""
-    p = operations.particles
     if len(p.groups) == 1:
         return p.initial_volume
     measure = np.zeros(len(p))

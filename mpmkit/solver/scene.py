@@ -21,22 +21,6 @@ with 0.42 of dx/c.
 """
 
 
-def particles_along_axes(body: Body, dim: int) -> tuple[int, ...]:
-    """Particles along each axis of a cell."""
-    given = body.particles_per_cell
-    if given is None:
-        return (2,) * dim
-    if isinstance(given, list):
-        return tuple(given)
-    return (round(given ** (1 / dim)),) * dim
-
-
-def kept_box(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """The domain: where a symmetry plane cuts a body, only what lies inside is kept."""
-    ends = np.array([case.grid.domain[axis] for axis in case.space_.axes])
-    return ends[:, 0], ends[:, 1]
-
-
 def make_particles(case: Case) -> Particles:
     """Fill the bodies with particles; bodies of the same material share a group."""
     materials: list[Material] = []
@@ -50,7 +34,7 @@ def make_particles(case: Case) -> Particles:
     _refuse_overlaps(case, bodies, samples)
     counts = [len(found.volume) for found in samples]
 
-    lower, _ = kept_box(case)
+    lower, _ = case.domain_bounds
     position = np.concatenate([found.position for found in samples])
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
@@ -136,14 +120,14 @@ def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:
 
 def _sample_body(case: Case, number: int) -> Sample:
     body, space = case.bodies[number], case.space_
-    box = kept_box(case)
+    bounds = case.domain_bounds
     found = sample(
         body.shape,
         space,
-        origin=box[0],
+        origin=bounds[0],
         cell_size=case.grid.cell_size,
-        per_axis=particles_along_axes(body, space.dim),
-        keep=box,
+        per_axis=body.particles_along_axes(space.dim),
+        keep=bounds,
     )
     if len(found.volume) == 0:
         raise CaseError(

@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from ..case.model import Case
-from ..kernels.sums import motion
+from ..kernels.sums import kinetics
 from .grid import Grid
 from .guards import Guards, stop
-from .layout import Scattered
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
 from .scene import make_particles
+from .sorting import Scattered
 from .sound import follow_flow, mach_number
 from .splitting import OutOfMemory, split
 from .time_step import Limits, choose_step, limits, warnings
@@ -63,7 +63,7 @@ class Simulation:
         """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
         p = self.particles
         follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
-        mass, doubled, square = motion(p.mass, p.velocity)
+        mass, doubled, square = kinetics(p.mass, p.velocity)
         speed = math.sqrt(square)
         self.mach_number = mach_number(p, speed)
         self.limits = limits(p.groups, self.grid.cell_size, speed)
@@ -124,6 +124,15 @@ class Simulation:
         if found:
             self.operations.allocate()
         return found
+
+    @property
+    def mapped_mass(self) -> float | None:
+        """Mass that the nodes got in the last step, kg; None where there was no step yet."""
+        return self.operations.mapped_mass
+
+    def sum_of_weights(self) -> np.ndarray:
+        """Σ N of every particle, ``(n,)``, of the last step: 1 but for rounding."""
+        return np.prod(self.operations.weight.sum(axis=-1), axis=1)
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""

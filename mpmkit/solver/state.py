@@ -14,7 +14,7 @@ State = dict[str, np.ndarray]
 
 def state_of(simulation: Simulation) -> State:
     """What a simulation that has done a step depends on from here on, beside its case."""
-    p, operations, layout = simulation.particles, simulation.operations, simulation.operations.layout
+    p, operations, sorting = simulation.particles, simulation.operations, simulation.operations.sorting
     numbers = {
         "time": simulation.time,
         "steps": simulation.steps,
@@ -30,7 +30,7 @@ def state_of(simulation: Simulation) -> State:
         "sound_speeds": [np.nan if g.sound_speed is None else g.sound_speed for g in p.groups],
     }
     state = {name: np.array(value) for name, value in numbers.items()}
-    state |= {f"layout.{name}": value for name, value in layout.state().items()}
+    state |= {f"sorting.{name}": value for name, value in sorting.state().items()}
     state |= {f"particles.{name}": value for name, value in p.arrays().items()}
     for index, group in enumerate(p.groups):
         state |= {f"law.{index}.{name}": value for name, value in group.state.items()}
@@ -53,7 +53,7 @@ def restore(simulation: Simulation, state: State) -> None:
         group.sound_speed = None if np.isnan(speed) else float(speed)
         group.state = {name: state[f"law.{index}.{name}"].copy() for name in group.state}
     operations.allocate()
-    operations.layout.restore({name: state[f"layout.{name}"] for name in operations.layout.state()})
+    operations.sorting.restore({name: state[f"sorting.{name}"] for name in operations.sorting.state()})
     operations.window.nodes[:, CONTACT] = state["contacts"]
     operations.mean_speed = float(state["mean_speed"])
     operations.relaxation.due = float(state["relaxation_due"])

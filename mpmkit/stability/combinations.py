@@ -10,7 +10,7 @@ from ..case import parse_case
 from ..case.model import Case
 from ..errors import CaseError
 from ..registry import installed
-from ..study.refit import with_law
+from ..rheology.refit import with_law
 
 KINDS = ("shape", "order", "velocity", "volumetric", "law")
 """What may be combined."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from .. import __version__
+from ..version import __version__
 from .members import Member, dimensions, shown
 from .model import Study
 from .quantities import COSTS, FIGURES

@@ -11,17 +11,18 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from .. import __version__
 from ..case import parse_case
 from ..case.load import read_case
 from ..case.model import Case
 from ..case.overrides import assign
-from ..case_files import portable
+from ..case.resolved import resolved
 from ..errors import CaseError
-from ..provenance import plugins_used, resolved
 from ..registry import installed
+from ..rheology.refit import with_law
+from ..running.case_files import portable
+from ..running.provenance import plugins_used
+from ..version import __version__
 from .model import Changes, Study, shown
-from .refit import with_law
 
 MOST = 10_000
 """Members of a study, far more than anybody waits for."""

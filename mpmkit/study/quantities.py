@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..recorder import COLUMNS
+from ..running.recorder import COLUMNS
 
 FIGURES = {
     "t500": ("s", "time to a spread of 500 mm"),

@@ -51,8 +51,8 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
     import json
 
     from ..case import parse_case
-    from ..memory import expected_bytes, require_memory
-    from ..runner import run
+    from ..running.runner import run
+    from ..solver.memory import expected_bytes, require_memory
 
     try:
         case = parse_case(data, ["output.report=false", f"output.frame_interval={data['until']!r}"])

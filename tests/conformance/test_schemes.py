@@ -78,9 +78,9 @@ def run_with_threads(threads, make, steps):
     shake(simulation)
     for _ in range(steps):
         simulation.advance()
-        load = np.diff(simulation.operations.layout.tasks).sum(axis=0)
+        load = np.diff(simulation.operations.sorting.tasks).sum(axis=0)
         assert ((load > 0).sum(axis=1) > 1).any()  # blocks of one colour, for two threads to meet in
-    assert simulation.operations.layout.sorts > 1  # the order of particles changed on the way
+    assert simulation.operations.sorting.sorts > 1  # the order of particles changed on the way
     return simulation.particles.arrays()
 
 

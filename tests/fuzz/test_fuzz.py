@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from mpmkit.case import load_case, parse_case
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, GuardStop, MpmkitError
-from mpmkit.memory import expected_particles, require_memory
+from mpmkit.solver.memory import expected_particles, require_memory
 from mpmkit.solver.simulation import Simulation
 
 THOUSANDS = int(os.environ.get("MPMKIT_FUZZ", "3000"))

@@ -4,13 +4,7 @@ import math
 
 import numpy as np
 
-from mpmkit.contracts import (
-    GeneralisedNewtonianLaw,
-    Operations,
-    VolumetricTreatment,
-    hookimpl,
-    quantity,
-)
+from mpmkit.contracts import GeneralisedNewtonianLaw, Operations, VolumetricTreatment, hookimpl, quantity
 
 LONG = 40.0
 """Times √(h/g) after which fluids without a yield stress were seen to lose volume, at the earliest."""

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from .case.model import Case
-from .contracts import Plugin
-from .errors import GuardStop, MpmkitError, PluginFault, reason
-from .provenance import plugins_of
-from .registry import installed
+from ..contracts import Plugin
+from ..errors import GuardStop, MpmkitError, PluginFault, reason
+from .discovery import installed
 
+Used = Sequence[tuple[str, Plugin]]
+"""Plug-ins, each with its kind."""
 GUARD = "plug-in-error"
 NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
 """Modules of the framework that run on behalf of the plug-in that called them."""
 
 
 @contextmanager
-def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: (0, 0.0)) -> Iterator[None]:
-    """Stop a run inside the block by a guard where a plug-in of the case raises an exception, or is at fault.
+def blaming_plugins(
+    plugins: Used, when: Callable[[], tuple[int, float]] = lambda: (0, 0.0)
+) -> Iterator[None]:
+    """Stop a run inside the block by a guard where one of its plug-ins raises an exception, or is at fault.
 
     Args:
-        case: names the plug-ins.
+        plugins: those that may be to blame, each with its kind.
         when: gives the step and the time, s, that the run has come to.
 
     Raises:
@@ -36,11 +38,11 @@ def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: 
     except PluginFault as fault:
         step, time = when()
         sentence = (
-            f"stopped at step {step}, t = {time:.6g} s: the plug-in {_named(fault.plugin, case)} {fault}"
+            f"stopped at step {step}, t = {time:.6g} s: the plug-in {_named(fault.plugin, plugins)} {fault}"
         )
         raise GuardStop(GUARD, sentence, step=step, particle=fault.particle) from fault
     except Exception as error:
-        culprit = _culprit(error, plugins_of(case))
+        culprit = _culprit(error, plugins)
         if culprit is None:  # a fault of the framework: it is not to be mistaken for a stranger's
             raise
         (step, time), (plugin, where) = when(), culprit
@@ -48,7 +50,7 @@ def blaming_plugins(case: Case, when: Callable[[], tuple[int, float]] = lambda: 
         raise GuardStop(GUARD, f"stopped at step {step}, t = {time:.6g} s: {what}", step=step) from error
 
 
-def _culprit(error: Exception, plugins: list[tuple[str, Plugin]]) -> tuple[str, str] | None:
+def _culprit(error: Exception, plugins: Used) -> tuple[str, str] | None:
     """The plug-in whose code was nearest to where the exception was raised, and the place in it."""
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         module = str(frame.f_globals.get("__name__"))
@@ -61,9 +63,9 @@ def _culprit(error: Exception, plugins: list[tuple[str, Plugin]]) -> tuple[str, 
     return None
 
 
-def _named(plugin: object, case: Case) -> str:
-    """The plug-in of a case as sentences have it."""
-    for kind, used in plugins_of(case):
+def _named(plugin: object, plugins: Used) -> str:
+    """The plug-in as sentences have it."""
+    for kind, used in plugins:
         if type(used) is type(plugin):
             return _described(kind, used)
     return type(plugin).__name__

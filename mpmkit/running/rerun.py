@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .case.model import Case
-from .errors import CaseError
-from .output import RunDirectory
+from ..case.model import Case
+from ..errors import CaseError
+from ..output import RunDirectory
 from .provenance import attributes
 from .resume import differences
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ..running.threads import use_threads
 from ..solver.simulation import Simulation
-from ..threads import use_threads
 from .midflow import in_mid_flow
 from .scenes import BenchScene
 
@@ -21,7 +21,7 @@ KERNELS = {
     "particles to nodes": ("_map",),
     "nodes": ("map_to_grid", "solve_momentum", "_fold"),
     "nodes to particles": ("_take",),
-    "averages": ("sum_at_nodes", "average_at_nodes", "average_at_particles"),
+    "averages": ("sums", "at_nodes", "at_particles"),
     "volumes": ("_update_volumes", "_follow_domains", "_treated", "_pressure", "relax_volume"),
     "law": ("_update_law",),
 }
@@ -42,7 +42,7 @@ class Timing:
         return asdict(self)
 
 
-def measure(scene: BenchScene, threads: int | None = None, seconds: float = 5.0) -> Timing:
+def time_scene(scene: BenchScene, threads: int | None = None, seconds: float = 5.0) -> Timing:
     """Time full steps of a scene in mid-flow, with everything a real run does.
 
     Args:
@@ -54,12 +54,12 @@ def measure(scene: BenchScene, threads: int | None = None, seconds: float = 5.0)
 
 
 def timed(simulation: Simulation, name: str, threads: int | None, seconds: float) -> Timing:
-    """As ``measure``, of a scene that is already set up; it moves on."""
+    """As ``time_scene``, of a scene that is already set up; it moves on."""
     threads = use_threads(threads, len(simulation.particles))
     for _ in range(WARM_UP):
         simulation.advance()
     particles = len(simulation.particles)
-    watch = Stopwatch(simulation.operations)
+    watch = Stopwatch(simulation.operations, simulation.operations.averager)
     begin, before = clock.perf_counter(), simulation.particle_steps
     while (spent := clock.perf_counter() - begin) < seconds or simulation.particle_steps == before:
         simulation.advance()
@@ -77,21 +77,21 @@ def timed(simulation: Simulation, name: str, threads: int | None, seconds: float
 class Stopwatch:
     """Adds up the time in each operation of a scene, less that in the operations that it calls."""
 
-    def __init__(self, operations: Any) -> None:
+    def __init__(self, *owners: Any) -> None:
         self.spent: dict[str, float] = defaultdict(float)
-        self._operations = operations
         self._inner = [0.0]
-        self._names = [
-            name
-            for name in dir(type(operations))
-            if not name.startswith("__") and callable(getattr(operations, name)) and name != "step"
+        self._watched = [
+            (owner, name)
+            for owner in owners
+            for name in dir(type(owner))
+            if not name.startswith("__") and callable(getattr(owner, name)) and name != "step"
         ]
-        for name in self._names:
-            setattr(operations, name, self._timed(name, getattr(operations, name)))
+        for owner, name in self._watched:
+            setattr(owner, name, self._timed(name, getattr(owner, name)))
 
     def remove(self) -> None:
-        for name in self._names:
-            delattr(self._operations, name)
+        for owner, name in self._watched:
+            delattr(owner, name)
 
     def _timed(self, name: str, operation: Callable[..., Any]) -> Callable[..., Any]:
         def call(*arguments: Any, **options: Any) -> Any:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import logging
 
-from .errors import reason
-from .output import summarise, write_json
+from ..errors import reason
+from ..output import summarise, write_json
+from ..solver.simulation import Simulation
 from .provenance import plugins_used
 from .recorder import Recorder
-from .solver.simulation import Simulation
 
 LOGGER = logging.getLogger("mpmkit")
 FRACTURED = 0.05

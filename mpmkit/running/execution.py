@@ -7,14 +7,14 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .blame import blaming_plugins
-from .cautions import cautions
+from ..case.plugins import cautions, plugins_of
+from ..errors import GuardStop, Interrupted, MpmkitError, OutputError, reason
+from ..registry.blame import blaming_plugins
+from ..solver.simulation import Simulation
 from .conclusion import conclude, salvage
-from .errors import GuardStop, Interrupted, MpmkitError, OutputError, reason
 from .interrupts import held_interrupts
 from .recorder import Recorder
 from .saver import Saver
-from .solver.simulation import Simulation
 from .stopwatch import Stopwatch
 
 LOGGER = logging.getLogger("mpmkit")
@@ -54,7 +54,7 @@ def execute(
     """
     simulation = recorder.simulation
     try:
-        with blaming_plugins(simulation.case, lambda: (simulation.steps, simulation.time)):
+        with blaming_plugins(plugins_of(simulation.case), lambda: (simulation.steps, simulation.time)):
             _announce(simulation, threads)
             _advance(recorder, watch, listen, saver)
         conclude(recorder, "finished", watch.elapsed)

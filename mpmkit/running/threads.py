@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numba
 
-from .errors import CaseError
+from ..errors import CaseError
 
 PARTICLES_PER_THREAD = 10_000
 """Below this a second thread costs more in waiting than it saves."""

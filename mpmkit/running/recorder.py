@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from .output import FrameWriter, History, RunDirectory, Variable
+from ..case.output import FRAMES, ROWS
+from ..output import FrameWriter, History, RunDirectory, Variable
+from ..solver.measures import PARTICLE_FIELDS, frame_fields
+from ..solver.simulation import Simulation
 from .schedule import Schedule
-from .solver.measures import PARTICLE_FIELDS, frame_fields
-from .solver.simulation import Simulation
 
 COLUMNS = (
     Variable("spread_diameter", "m", "spread diameter"),
@@ -28,9 +29,6 @@ COLUMNS = (
     Variable("mach_number", "1", "largest speed over the sound speed"),
 )
 """The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""
-
-ROWS, FRAMES = 400, 20
-"""Rows and frames of a run whose case does not say how often."""
 
 
 class Recorder:

@@ -7,20 +7,21 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .blame import blaming_plugins
-from .case.model import Case
+from ..case.model import Case
+from ..case.plugins import plugins_of
+from ..errors import CaseError, GuardStop, OutputError, reason
+from ..output import RunDirectory, open_log, write_json
+from ..output.copies import Copies
+from ..registry.blame import blaming_plugins
+from ..solver.memory import require_memory
+from ..solver.simulation import Simulation
+from ..solver.state import restore
 from .case_files import from_copies, named_files, portable
-from .errors import CaseError, GuardStop, OutputError, reason
 from .execution import Listener, Progress, execute
-from .memory import require_memory
-from .output import RunDirectory, open_log, write_json
-from .output.copies import Copies
 from .provenance import attributes
 from .recorder import Recorder
 from .resume import case_of, identity, last_checkpoint, other_case
 from .saver import Saver
-from .solver.simulation import Simulation
-from .solver.state import restore
 from .stopwatch import Stopwatch
 from .threads import use_threads
 
@@ -64,7 +65,7 @@ def run(
     """
     require_memory(case)
     files = [] if out is None else named_files(case)
-    with blaming_plugins(case):
+    with blaming_plugins(plugins_of(case)):
         simulation = Simulation(case)
     threads = use_threads(threads, len(simulation.particles))
     watch = Stopwatch()
@@ -119,7 +120,7 @@ def resume(
     with RunDirectory(path).claimed(resume=True):
         arrays, words = last_checkpoint(path, found)
         with open_log(RunDirectory(path).log):
-            with blaming_plugins(found):
+            with blaming_plugins(plugins_of(found)):
                 simulation = Simulation(found)
             restore(simulation, arrays)
             threads = use_threads(threads, len(simulation.particles))
@@ -155,7 +156,7 @@ def _report(recorder: Recorder) -> None:
     if not case.output.report or directory is None:
         return
     try:
-        from .report import write_report
+        from ..report import write_report
 
         write_report(directory.path)
     except Exception as error:

@@ -14,9 +14,9 @@ import psutil
 from ..kernels import sort
 from ..kernels.locate import LOST, STRAYED, locate, wrap
 from ..kernels.scatter import NODE
+from .active_nodes import ActiveNodes
 from .grid import Grid, Window
 from .particles import Particles
-from .reach import Reach
 from .tasks import TASKS, cuts
 
 DRIFT = 1
@@ -35,7 +35,7 @@ class Scattered(Exception):
         self.particle = particle
 
 
-class Layout:
+class Sorting:
     """Keeps the particles sorted, the window over them, and what of it they can reach."""
 
     def __init__(self, grid: Grid, particles: Particles, window: Window) -> None:
@@ -103,7 +103,7 @@ class Layout:
         particles.reorder(order, scratch)
         self._verdicts = np.empty((count, 2), dtype=np.int64)
         self._share_out(first_of_colour)
-        self.reach = self._reach()
+        self.active = self._active_nodes()
         self.sorts += 1
         return None
 
@@ -125,7 +125,7 @@ class Layout:
         self.tasks, self.sorts = state["tasks"].copy(), int(state["sorts"])
         self._verdicts = np.empty((len(self._block_cell), 2), dtype=np.int64)
         self.window.cover(self._low, self._high)
-        self.reach = self._reach()
+        self.active = self._active_nodes()
 
     def _share_out(self, first_of_colour: np.ndarray) -> None:
         """Cut the blocks of every colour into tasks of about equal load, all groups together."""
@@ -134,16 +134,16 @@ class Layout:
         for colour, (begin, end) in enumerate(pairwise(first_of_colour)):
             self.tasks[:, colour] = self._block_first[:, begin + cuts(load[begin : end + 1])]
 
-    def _reach(self) -> Reach:
+    def _active_nodes(self) -> ActiveNodes:
         """The nodes that particles can touch for as long as none has strayed: see ``kernels.locate``."""
         occupied = (np.diff(self._block_first, axis=1) > 0).any(axis=0)
         cell = self._block_cell[occupied]
         low, high = cell - DRIFT, cell + sort.BLOCK_WIDTH - 1 + DRIFT
-        return Reach(self.window, np.maximum(low, self._low), np.minimum(high, self._high))
+        return ActiveNodes(self.window, np.maximum(low, self._low), np.minimum(high, self._high))
 
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
-        low, high = self.window.reach(self._low, self._high)
+        low, high = self.window.touchable(self._low, self._high)
         if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > psutil.virtual_memory().available:
             away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)
             raise Scattered(int(np.argmax(away)))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import time as clock
 from typing import Any
 
-from .output.checkpoints import Checkpoints
+from ..output.checkpoints import Checkpoints
+from ..solver.state import state_of
 from .recorder import Recorder
-from .solver.state import state_of
 from .stopwatch import Stopwatch
 
 

@@ -15,7 +15,7 @@ from ..case.overrides import assign
 from ..contracts.elastoviscoplastic import ElastoviscoplasticLaw
 from ..errors import CaseError
 from ..registry import installed
-from ..study.refit import with_law
+from ..rheology.refit import with_law
 from .symmetry import axis_of_revolution, planes_of_symmetry
 
 CELLS_HIGH = (30, 15)

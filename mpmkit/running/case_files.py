@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .case.model import Case
-from .case.overrides import assign
-from .content_names import name_by_content
-from .errors import CaseError
-from .geometry import Shape
-from .output.run_directory import MESHES
-from .provenance import resolved
+from ..case.model import Case
+from ..case.overrides import assign
+from ..case.resolved import resolved
+from ..errors import CaseError
+from ..geometry import Shape
+from ..output.content_names import name_by_content
+from ..output.run_directory import MESHES
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import pytest
 
 from mpmkit.case import parse_case
 from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
-from mpmkit.solver import reach as reach_module
+from mpmkit.solver import active_nodes
+from mpmkit.solver.active_nodes import ActiveNodes
 from mpmkit.solver.grid import Grid, Window
-from mpmkit.solver.reach import Reach
 from mpmkit.solver.simulation import Simulation
 
 FACES = [
@@ -35,19 +35,19 @@ def reached(faces, cells, seed):
     high = np.minimum(low + rng.integers(0, 4, (3, dim)), np.array(cells) - 1)
     window = Window(grid)
     window.cover(low.min(axis=0), high.max(axis=0))
-    return grid, window, (low, high), Reach(window, low, high)
+    return grid, window, (low, high), ActiveNodes(window, low, high)
 
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("faces", FACES, ids=str)
 def test_every_node_that_a_particle_can_touch_is_in_a_row(faces, seed):
-    grid, window, boxes, reach = reached(faces, [40, 30, 20][: len(faces)], seed)
+    grid, window, boxes, active = reached(faces, [40, 30, 20][: len(faces)], seed)
     inside = np.zeros(int(np.prod(window.shape)), dtype=int)
-    for begin, end in reach.rows:
+    for begin, end in active.rows:
         inside[begin:end] += 1
     assert inside.max() == 1  # no node is gone through twice
-    assert (np.diff(reach.tasks) >= 0).all()
-    assert list(reach.tasks[[0, -1]]) == [0, len(reach.rows)]
+    assert (np.diff(active.tasks) >= 0).all()
+    assert list(active.tasks[[0, -1]]) == [0, len(active.rows)]
     for low, high in zip(*boxes, strict=True):
         for cell in product(*map(range, low, high + 1)):
             nodes = np.array(list(product(*(range(k - 1, k + 3) for k in cell))))
@@ -60,11 +60,11 @@ def test_every_node_that_a_particle_can_touch_is_in_a_row(faces, seed):
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("faces", FACES, ids=str)
 def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces, seed):
-    grid, window, boxes, reach = reached(faces, [12, 9, 7][: len(faces)], seed)
+    grid, window, boxes, active = reached(faces, [12, 9, 7][: len(faces)], seed)
     inside = np.zeros(window.shape[: grid.dim], dtype=bool)
-    for begin, end in reach.rows:
+    for begin, end in active.rows:
         inside.reshape(-1)[begin:end] = True
-    for face, (first, behind) in enumerate(zip(reach.face_first[:-1], reach.face_first[1:], strict=True)):
+    for face, (first, behind) in enumerate(zip(active.face_first[:-1], active.face_first[1:], strict=True)):
         axis, side = divmod(face, 2)
         kind, (lower, upper) = grid.faces[axis, side], window.walls[axis]
         expected = []
@@ -77,14 +77,14 @@ def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces
             else:
                 continue
             expected.append([place @ window.strides[: grid.dim], image @ window.strides[: grid.dim]])
-        found = reach.mirrors[first:behind, :2].tolist()
+        found = active.mirrors[first:behind, :2].tolist()
         held = [pair for pair in expected if pair in found]
         assert sorted(found) == sorted(held)
         assert len(found) == len(set(map(tuple, found)))
         for ghost, image in expected:
             if [ghost, image] not in found:  # within a row, but between what particles can touch
-                assert not reach_module._touched(window, *boxes).reshape(-1)[[ghost, image]].any()
-        assert inside.reshape(-1)[reach.mirrors[first:behind, :2]].all()
+                assert not active_nodes._touched(window, *boxes).reshape(-1)[[ghost, image]].any()
+        assert inside.reshape(-1)[active.mirrors[first:behind, :2]].all()
 
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
@@ -123,13 +123,13 @@ def test_leaving_out_the_others_changes_no_bit(faces, order, monkeypatch):
     }
     fewer = Simulation(parse_case(copy.deepcopy(case)))
     all_of_them = Simulation(parse_case(case))
-    whole = reach_module._touched
+    whole = active_nodes._touched
     for _ in range(60):
         fewer.advance()
-        monkeypatch.setattr(reach_module, "_touched", lambda *given: np.ones_like(whole(*given)))
+        monkeypatch.setattr(active_nodes, "_touched", lambda *given: np.ones_like(whole(*given)))
         all_of_them.advance()
-        monkeypatch.setattr(reach_module, "_touched", whole)
-    assert fewer.operations.layout.sorts > 1
+        monkeypatch.setattr(active_nodes, "_touched", whole)
+    assert fewer.operations.sorting.sorts > 1
     for name in ("position", "velocity", "stress", "volume_ratio"):
         np.testing.assert_array_equal(
             getattr(fewer.particles, name), getattr(all_of_them.particles, name), err_msg=name
@@ -160,11 +160,11 @@ def test_nothing_is_ever_put_on_a_node_out_of_reach():
     for _ in range(60):
         simulation.advance()
         away = np.ones(len(operations.window.nodes), dtype=bool)
-        for begin, end in operations.layout.reach.rows:
+        for begin, end in operations.sorting.active.rows:
             away[begin:end] = False
         assert away.sum() > 0.8 * len(away)
         assert not operations.window.nodes[away].any()
-    assert operations.layout.sorts == 1
+    assert operations.sorting.sorts == 1
     flown = simulation.particles.position[simulation.particles.body == 2].mean(axis=0) - 1.35
     np.testing.assert_allclose(flown, simulation.time * np.array([3, 2, 1]), rtol=1e-9)
     assert flown[0] > 3 * 0.1

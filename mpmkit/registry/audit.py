@@ -13,17 +13,17 @@ It cannot see what only happens to other particles or in other steps, nor writes
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, Motion, Plugin, ShapeFunction
+from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_not_finite
-from .particles import LEAST_RATIO, MOST_RATIO, Group, Particles
 
 FEW, LOOKS = 20_000, 20
 """Particles up to which all numbers are looked at in every step, and steps between two looks at more."""
@@ -62,32 +62,39 @@ class Fenced:
         return self.rows.tobytes() != self._given
 
 
-def rehearse_law(p: Particles, group: Group, dt: float) -> None:
-    """Call a law on copies of a sample of its particles.
+def rehearse_law(
+    law: ConstitutiveLaw,
+    motion: Motion,
+    state: Mapping[str, np.ndarray],
+    stress: np.ndarray,
+    dt: float,
+    numbers: np.ndarray,
+) -> None:
+    """Call a law on copies of a sample of its particles, called ``numbers``.
 
     Raises:
         PluginFault: it wrote where it must not, or not as it must.
     """
-    law, motion, which = group.law, p.motion(group), _sample(group.part.stop - group.part.start)
+    which = _sample(len(numbers))
     given = {name: Fenced(a[which], READ) for name, a in vars(motion).items() if isinstance(a, np.ndarray)}
-    kept = {name: Fenced(array[which], WRITTEN) for name, array in group.state.items()}
-    stress = Fenced(p.stress[group.part][which], WRITTEN)
-    state = {name: array.rows for name, array in kept.items()}
+    kept = {name: Fenced(array[which], WRITTEN) for name, array in state.items()}
+    written = Fenced(stress[which], WRITTEN)
+    rows = {name: array.rows for name, array in kept.items()}
     fenced: dict[str, Any] = {name: array.rows for name, array in given.items()}
     rehearsed = replace(motion, **fenced)
-    returned = law.update_stress(rehearsed, state, dt, stress.rows)
+    returned = law.update_stress(rehearsed, rows, dt, written.rows)
     if returned is not None:
         raise PluginFault(
             law, f"returned {_described(returned)}; it must write into 'stress', and return nothing"
         )
     for name, array in kept.items():
-        if state.get(name) is not array.rows:
+        if rows.get(name) is not array.rows:
             raise PluginFault(
                 law, f"replaced the array of its state '{name}'; it must write into the one there"
             )
-    _require_intact(law, {"stress": stress, **{f"state '{name}'": array for name, array in kept.items()}})
+    _require_intact(law, {"stress": written, **{f"state '{name}'": array for name, array in kept.items()}})
     _require_unchanged(law, given)
-    require_stress(law, rehearsed, dt, stress.rows, p.number[group.part][which])
+    require_stress(law, rehearsed, dt, written.rows, numbers[which])
 
 
 def rehearse_shape(

@@ -9,14 +9,14 @@ from typing import Any
 import numba
 import numpy as np
 
-from . import __version__
-from .case import load_case
-from .case.model import Case
+from ..case import load_case
+from ..case.model import Case
+from ..errors import CaseError
+from ..output import RunDirectory
+from ..output.checkpoints import Checkpoints
+from ..output.copies import Copies
+from ..version import __version__
 from .case_files import named_files, portable
-from .errors import CaseError
-from .output import RunDirectory
-from .output.checkpoints import Checkpoints
-from .output.copies import Copies
 from .provenance import plugins_used
 
 

@@ -12,10 +12,10 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from . import __version__
-from .errors import CaseError
-from .output.atomic import cannot_write
-from .registry import installed
+from ..errors import CaseError
+from ..output.atomic import cannot_write
+from ..version import __version__
+from . import installed
 
 KINDS = {"law": "constitutive law", "shape": "shape function", "order": "update order"}
 """Kinds of plug-ins that there are templates for, and what they are called."""

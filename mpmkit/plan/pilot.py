@@ -13,12 +13,12 @@ import time as clock
 from dataclasses import dataclass
 from typing import Any
 
-from .case import parse_case
-from .case.model import Case
-from .errors import MpmkitError
-from .memory import expected_particles
-from .provenance import resolved
-from .solver.simulation import Simulation
+from ..case import parse_case
+from ..case.model import Case
+from ..case.resolved import resolved
+from ..errors import MpmkitError
+from ..solver.memory import expected_particles
+from ..solver.simulation import Simulation
 
 FEW = {2: 250, 3: 1500}
 """Particles of a pilot, by the number of dimensions, at about the most."""

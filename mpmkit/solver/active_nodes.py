@@ -11,7 +11,7 @@ from .grid import GHOST, Window
 from .tasks import cuts
 
 
-class Reach:
+class ActiveNodes:
     """Rows of nodes to go through, and the ghosts and images among them.
 
     Attributes:
@@ -46,7 +46,7 @@ class Reach:
 def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> np.ndarray:
     """Which nodes of the window particles in these boxes of cells can touch."""
     touched = np.zeros(window.shape[: window.grid.dim], dtype=bool)
-    low, high = window.reach(lowest_cell, highest_cell)
+    low, high = window.touchable(lowest_cell, highest_cell)
     for begin, end in zip(low - window.lower, high - window.lower + 1, strict=True):
         touched[tuple(map(slice, begin, end))] = True
     return touched

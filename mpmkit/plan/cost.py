@@ -7,15 +7,16 @@ import time as clock
 from statistics import median
 from typing import Any
 
-from .advice import cheaper_models, expected_error
-from .blame import blaming_plugins
-from .case.model import Case
-from .cautions import cautions
-from .errors import CaseError, GuardStop
-from .memory import expected_bytes, require_memory
+from ..case.model import Case
+from ..case.plugins import cautions, plugins_of
+from ..errors import CaseError, GuardStop
+from ..registry.blame import blaming_plugins
+from ..running.threads import use_threads
+from ..solver.memory import expected_bytes, require_memory
+from ..solver.simulation import Simulation
+from .cheaper import cheaper_models
+from .expectation import expected_error
 from .pilot import Growth, pilot
-from .solver.simulation import Simulation
-from .threads import use_threads
 
 TRIAL_SECONDS = 1.0
 """How long the scene is run to measure its speed on this machine, after one step to compile."""
@@ -48,7 +49,7 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         GuardStop: it diverges at once, or a plug-in raised an exception.
     """
     require_memory(case)
-    with blaming_plugins(case):
+    with blaming_plugins(plugins_of(case)):
         cost = _cost(Simulation(case), threads)
     return cost | {"expected_error": expected_error(case), "cheaper": _cheaper(case, cost, threads)}
 
@@ -60,7 +61,7 @@ def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict
     lines = []
     for model in cheaper_models(case):
         try:
-            with blaming_plugins(model.case):
+            with blaming_plugins(plugins_of(model.case)):
                 found = _cost(Simulation(model.case), threads)
         except (CaseError, GuardStop):  # it cannot be run after all, and is no advice
             continue

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import psutil
 
-from .case.model import Case
-from .errors import CaseError
-from .geometry import expected_count
-from .kernels.scatter import NODE, PAIR
-from .output import PARTICLE_VARIABLES
-from .recorder import ROWS
-from .solver.scene import kept_box, particles_along_axes, tracks_deformation
+from ..case.model import Case
+from ..case.output import ROWS
+from ..errors import CaseError
+from ..geometry import expected_count
+from ..kernels.scatter import NODE, PAIR
+from ..output import PARTICLE_VARIABLES
+from .scene import tracks_deformation
 
 DOUBLE = 8
 INDEX = 4
@@ -32,8 +32,8 @@ def expected_particles(case: Case) -> float:
             body.shape,
             case.space_,
             case.grid.cell_size,
-            particles_along_axes(body, case.space_.dim),
-            keep=kept_box(case),
+            body.particles_along_axes(case.space_.dim),
+            keep=case.domain_bounds,
         )
         for body in case.bodies
     )
@@ -79,7 +79,7 @@ def window_nodes(case: Case) -> float:
 def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner, m, of the box around all bodies, as far as it is in the domain."""
     bounds = [body.shape.bounds(case.space_) for body in case.bodies]
-    domain_lower, domain_upper = kept_box(case)
+    domain_lower, domain_upper = case.domain_bounds
     lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
     upper = np.minimum(np.max([high for _, high in bounds], axis=0), domain_upper)
     return lower, upper

@@ -3,92 +3,22 @@
 from __future__ import annotations
 
 import difflib
-import inspect
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from types import ModuleType
 
 import pluggy
 
-from .contracts import API_VERSION, KINDS, Plugin, ShapeFunction, hooks
-from .contracts.shape import MOST_NODES
+from ..contracts import KINDS, Plugin, hooks
+from .registered import Problem, Registered, Registry
+from .requirements import check
 
-RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
-"""Parameters that a plug-in cannot have, because something else stands at that key of a case."""
 CHOSEN = "MPMKIT_PLUGINS"
 """Environment variable that names, with commas between, the distributions to load beside mpmkit's own; all of
 them if it is not set, none if it is empty. ``--no-plugins`` of the command line empties it."""
-NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-
-
-@dataclass(frozen=True)
-class Registered:
-    """A plug-in and where it comes from."""
-
-    kind: str
-    plugin: type[Plugin]
-    distribution: str
-    version: str
-    entry_point: str
-
-    @property
-    def name(self) -> str:
-        return self.plugin.name
-
-
-@dataclass(frozen=True)
-class Problem:
-    """An entry point, or one plug-in of it, that cannot be used, and why."""
-
-    distribution: str
-    entry_point: str
-    reason: str
-    kind: str | None = None
-    """Kind and name of the plug-in, where the entry point got far enough to say them."""
-    name: str | None = None
-    left_out: bool = False
-    """Whether nothing is wrong with it but that nobody asked for it."""
-
-    def __str__(self) -> str:
-        if self.left_out:
-            return f"plug-in '{self.entry_point}' of distribution '{self.distribution}' {self.reason}"
-        return (
-            f"plug-in '{self.entry_point}' of distribution '{self.distribution}' is not usable: {self.reason}"
-        )
-
-    def concerns(self, kind: str, name: str) -> bool:
-        """Whether a case that asks for this plug-in may mean this one."""
-        if (self.kind, self.name) == (kind, name):
-            return True
-        return name in re.split(r"[.:_]", self.entry_point) or name.replace("-", "_") in self.entry_point
-
-
-class Registry:
-    """Every usable plug-in by kind and name, and every problem met on the way.
-
-    Two plug-ins of the same kind and name are a problem of both: which one is meant must never be a matter of
-    the order in which they were found.
-    """
-
-    def __init__(self, found: list[Registered], problems: list[Problem]) -> None:
-        self.plugins: dict[str, dict[str, Registered]] = {kind: {} for kind in KINDS}
-        self.problems = list(problems)
-        for one in found:
-            rivals = [other for other in found if (other.kind, other.name) == (one.kind, one.name)]
-            if len(rivals) == 1:
-                self.plugins[one.kind][one.name] = one
-            else:
-                origins = " and ".join(f"'{r.entry_point}' of '{r.distribution}'" for r in rivals)
-                reason = f"{one.kind} '{one.name}' is registered by {origins}; uninstall all but one of them"
-                self.problems.append(Problem(one.distribution, one.entry_point, reason, one.kind, one.name))
-
-    def of_kind(self, kind: str) -> dict[str, type[Plugin]]:
-        """Names and classes of one kind, in alphabetical order."""
-        return {name: found.plugin for name, found in sorted(self.plugins[kind].items())}
 
 
 def discover() -> Registry:
@@ -182,34 +112,3 @@ def _provided(module: ModuleType) -> Iterator[tuple[str, type[Plugin]]]:
                 raise TypeError(f"{hook.name} returned {plugins!r}; it must return a list of classes")
             for plugin in plugins:
                 yield kinds[hook.name], plugin
-
-
-def check(plugin: type[Plugin], kind: str) -> None:
-    """Raise a TypeError or ValueError, with the reason, unless a plug-in can be used as one of this kind."""
-    contract = KINDS[kind][1]
-    if not (isinstance(plugin, type) and issubclass(plugin, contract)):
-        raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
-    version = getattr(plugin, "api_version", None)
-    if version is None:
-        raise TypeError(f"{plugin.__name__} has no 'api_version'; this is version {API_VERSION}")
-    if version != API_VERSION:
-        raise ValueError(f"it is written for API version {version}, this is version {API_VERSION}")
-    for attribute in ("name", "citation"):
-        if not isinstance(getattr(plugin, attribute, None), str):
-            raise TypeError(f"{plugin.__name__} has no '{attribute}'")
-    if not NAME.fullmatch(plugin.name):
-        raise ValueError(
-            f"its name is '{plugin.name}'; it must be of lower-case letters, digits and single hyphens"
-        )
-    if issubclass(plugin, ShapeFunction):
-        support = getattr(plugin, "support", None)
-        if support not in range(2, MOST_NODES + 1):
-            raise ValueError(f"its support is {support}; it must be 2 to {MOST_NODES} nodes along an axis")
-    if inspect.isabstract(plugin):
-        missing = ", ".join(sorted(plugin.__abstractmethods__))
-        raise TypeError(f"{plugin.__name__} lacks {missing}, which a {contract.__name__} must have")
-    for parameter in RESERVED.get(kind, {"name"}) & set(plugin.model_fields):
-        raise ValueError(
-            f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
-        )
-    plugin.model_json_schema()  # a parameter that has none would break the schema of all

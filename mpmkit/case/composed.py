@@ -1,0 +1,83 @@
+"""The model of case files, composed of the case's own fields and the plug-ins that are registered.
+
+A third party's parameters are validated, documented and completed in an editor exactly as the built-in ones.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache, reduce
+from operator import or_
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
+
+from ..contracts import ConstitutiveLaw
+from ..registry import Registry
+from .consistency import check
+from .model import Body, Case, Material, Scheme
+
+
+class CheckedCase(Case):
+    """A case whose fields fit together."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> CheckedCase:
+        check(self)
+        return self
+
+
+def _one_of(members: dict[str, type], key: str) -> Any:
+    """Annotation of a field that holds one of several models, told apart by the constant at ``key``."""
+
+    def tag(value: Any) -> Any:
+        if isinstance(value, dict):
+            return value.get(key)
+        return value if isinstance(value, str) else getattr(value, key, None)
+
+    if not members:  # every one of them is broken or refused: only a case that is read fails of it
+        return Literal["none is installed"]
+    return Annotated[
+        reduce(or_, [Annotated[cls, Tag(name)] for name, cls in members.items()]), Discriminator(tag)
+    ]
+
+
+def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
+    """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
+    preset = Field(default=default, validate_default=True) if default in plugins else ...
+    return _one_of(plugins, "name"), preset
+
+
+def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
+    own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
+    base = type("Material", (Material,), {"law_class": law, "__module__": Material.__module__})
+    return create_model(
+        f"Material_{law.__name__}",
+        __base__=base,
+        __doc__=law.__doc__,
+        law=(Literal[law.name], ...),
+        equation_of_state=_choice(registry.of_kind("equation_of_state"), "linear"),
+        **own_fields,  # type: ignore[call-overload]
+    )
+
+
+@lru_cache(maxsize=4)
+def case_model(registry: Registry) -> type[Case]:
+    """The model of case files for the plug-ins that are registered."""
+    laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
+    body = create_model("Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of(laws, "law"), ...))
+    scheme = create_model(
+        "Scheme",
+        __base__=Scheme,
+        __doc__=Scheme.__doc__,
+        shape=_choice(registry.of_kind("shape"), "cpgimp"),
+        order=_choice(registry.of_kind("order"), "usl"),
+        velocity=_choice(registry.of_kind("velocity"), "apic"),
+        volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
+    )
+    return create_model(
+        "Case",
+        __base__=CheckedCase,
+        __doc__=Case.__doc__,
+        bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
+        scheme=(scheme, Field(default={}, validate_default=True)),
+    )

@@ -1,0 +1,44 @@
+"""What a class must be to be used as a plug-in of its kind."""
+
+from __future__ import annotations
+
+import inspect
+import re
+
+from ..contracts import API_VERSION, KINDS, Plugin, ShapeFunction
+from ..contracts.shape import MOST_NODES
+
+RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
+"""Parameters that a plug-in cannot have, because something else stands at that key of a case."""
+NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+
+
+def check(plugin: type[Plugin], kind: str) -> None:
+    """Raise a TypeError or ValueError, with the reason, unless a plug-in can be used as one of this kind."""
+    contract = KINDS[kind][1]
+    if not (isinstance(plugin, type) and issubclass(plugin, contract)):
+        raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
+    version = getattr(plugin, "api_version", None)
+    if version is None:
+        raise TypeError(f"{plugin.__name__} has no 'api_version'; this is version {API_VERSION}")
+    if version != API_VERSION:
+        raise ValueError(f"it is written for API version {version}, this is version {API_VERSION}")
+    for attribute in ("name", "citation"):
+        if not isinstance(getattr(plugin, attribute, None), str):
+            raise TypeError(f"{plugin.__name__} has no '{attribute}'")
+    if not NAME.fullmatch(plugin.name):
+        raise ValueError(
+            f"its name is '{plugin.name}'; it must be of lower-case letters, digits and single hyphens"
+        )
+    if issubclass(plugin, ShapeFunction):
+        support = getattr(plugin, "support", None)
+        if support not in range(2, MOST_NODES + 1):
+            raise ValueError(f"its support is {support}; it must be 2 to {MOST_NODES} nodes along an axis")
+    if inspect.isabstract(plugin):
+        missing = ", ".join(sorted(plugin.__abstractmethods__))
+        raise TypeError(f"{plugin.__name__} lacks {missing}, which a {contract.__name__} must have")
+    for parameter in RESERVED.get(kind, {"name"}) & set(plugin.model_fields):
+        raise ValueError(
+            f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
+        )
+    plugin.model_json_schema()  # a parameter that has none would break the schema of all

@@ -1,0 +1,1 @@
+"""Flow curves of materials, apart from any scene."""

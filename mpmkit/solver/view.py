@@ -1,0 +1,51 @@
+"""What those that only look at a scene see of it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from ..case.model import Case
+from .grid import Grid
+from .particles import Particles
+from .time_step import Limits
+
+
+class SceneView(Protocol):
+    """A scene as guards see it: to be read, not to be changed. ``Simulation`` is one."""
+
+    @property
+    def case(self) -> Case: ...
+
+    @property
+    def grid(self) -> Grid: ...
+
+    @property
+    def particles(self) -> Particles: ...
+
+    @property
+    def time(self) -> float:
+        """s"""
+
+    @property
+    def steps(self) -> int:
+        """Steps done."""
+
+    @property
+    def time_step(self) -> float:
+        """s, of the next step."""
+
+    @property
+    def limits(self) -> Limits: ...
+
+    @property
+    def limited_by(self) -> str:
+        """The limit that sets the step."""
+
+    @property
+    def mapped_mass(self) -> float | None:
+        """Mass that the nodes got in the last step, kg; None where there was no step yet."""
+
+    def sum_of_weights(self) -> np.ndarray:
+        """Σ N of every particle, ``(n,)``, of the last step."""
