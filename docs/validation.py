@@ -1,4 +1,5 @@
-"""Measure everything that the validation tests vouch for, and write docs/validation.md and its figures.
+"""Measure everything that the validation tests vouch for, and write docs/validation.md and its figures,
+docs/images/validation/*.png.
 
     python docs/validation.py             # all of it, the slow tests too
     python docs/validation.py --fast      # without the slow ones
@@ -52,6 +53,9 @@ def main() -> None:
     chosen = arguments()
     status = 0 if chosen.draw else measure(chosen)
     sheets = records.load(RECORDS)
+    if not sheets:
+        print(f"{RECORDS} holds no measurements: nothing was written", file=sys.stderr)
+        sys.exit(2)
     drawn = figures.draw(sheets, IMAGES)
     REPORT.write_text(tables.report(sheets, drawn), encoding="utf-8")
     print(f"{REPORT.relative_to(ROOT)}: {tables.tally(sheets)}")

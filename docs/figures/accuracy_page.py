@@ -1,6 +1,8 @@
-"""Draw the figures of docs/accuracy.md and write the page, from what accuracy_runs.py left in runs/accuracy.
+"""Write docs/accuracy.md, docs/images/accuracy_cures.png and docs/images/accuracy_sensitivity.png.
 
-python docs/figures/accuracy_page.py
+    python docs/figures/accuracy_runs.py && python docs/figures/accuracy_page.py
+
+Made from what the runs left in runs/accuracy; none of them may be missing.
 """
 
 import csv
@@ -12,7 +14,8 @@ from common import DOCS, REFERENCE
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from members import CELLS, CURES, FLOORS, ORDERS, REGULARISATION, SOUND, STICK, STIFFNESS, Member
+from members import CELLS, CURES, EVERY, FLOORS, ORDERS, REGULARISATION, SOUND, STICK, STIFFNESS, Member
+from options import parser, require
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
@@ -120,8 +123,10 @@ def spreads(results: list[Result], first: str) -> str:
 
 
 def main() -> None:
+    parser().parse_args()
+    require(RUNS / f"{member.name}.json" for member in EVERY)
     groups = {
-        name: [Result(m) for m in members if (RUNS / f"{m.name}.json").exists()]
+        name: [Result(m) for m in members]
         for name, members in (
             ("cures", CURES),
             ("cells", CELLS),

@@ -6,17 +6,16 @@ Takes about an hour and a half on one core. Results: runs/accuracy/NAME.json.
 """
 
 import json
-import sys
 import time
-from pathlib import Path
 
 import numba
 import numpy as np
 from members import EVERY, Member
+from options import ROOT, parser
 
 from mpmkit.errors import GuardStop
 
-RUNS = Path("runs/accuracy")
+RUNS = ROOT / "runs/accuracy"
 TIMES = np.round(np.arange(0, 4.001, 0.02), 2)
 KEPT = ("spread_diameter", "height", "axis_height", "kinetic_energy", "fractured_fraction")
 
@@ -50,9 +49,11 @@ def run(member: Member) -> dict:
 
 
 def main() -> None:
+    arguments = parser()
+    arguments.add_argument("names", nargs="*", metavar="NAME", help="members to run; default: all")
+    wanted = arguments.parse_args().names
     numba.set_num_threads(1)
     RUNS.mkdir(parents=True, exist_ok=True)
-    wanted = sys.argv[1:]
     for member in EVERY:
         path = RUNS / f"{member.name}.json"
         if path.exists() or (wanted and member.name not in wanted):

@@ -8,12 +8,12 @@ part of the reference's largest value.
 
 import csv
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 import xarray
 from common import DOCS, REFERENCE
+from options import parser, require
 
 from mpmkit.case import parse_case
 from mpmkit.study.figures import members
@@ -29,7 +29,12 @@ def reference() -> tuple[np.ndarray, np.ndarray]:
 
 
 def main() -> None:
-    study = Path(sys.argv[1] if len(sys.argv) > 1 else "runs/accuracy_vs_cost")
+    arguments = parser()
+    arguments.add_argument(
+        "study", nargs="?", default=DOCS.parent / "runs/accuracy_vs_cost", type=Path, help="its directory"
+    )
+    study = arguments.parse_args().study
+    require([study / "results.nc"])
     time, spread = reference()
     results = xarray.open_dataset(study / "results.nc")
     cases = {}

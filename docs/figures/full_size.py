@@ -1,4 +1,4 @@
-"""Draw docs/images/full_size.png and full_size_section.png, and print the table of docs/performance.md.
+"""Draw docs/images/full_size.png and docs/images/full_size_section.png.
 
     mpmkit run cases/slump.json
     mpmkit run docs/figures/slump_full.json --threads 2
@@ -6,10 +6,9 @@
     mpmkit run cases/slump_ferreira.json --threads 1            # ended after an hour, with Ctrl-C
     python docs/figures/full_size.py
 
-The runs take about two hours of two cores together.
+The runs take about two hours of two cores together. Prints the table of docs/performance.md too.
 """
 
-import argparse
 import json
 from pathlib import Path
 
@@ -18,6 +17,7 @@ import xarray
 from common import DOCS, figure, plot_reference
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from options import parser, require
 
 from mpmkit.output import read_frame
 
@@ -31,11 +31,15 @@ TIMES = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
 
 
 def arguments() -> Path:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument(
+    """Where the run directories lie; all of them are there."""
+    options = parser()
+    options.add_argument(
         "--runs", default=DOCS.parent / "runs", type=Path, help="where the run directories lie"
     )
-    return parser.parse_args().runs
+    runs = options.parse_args().runs
+    require(runs / name / "history.nc" for name in RUNS)
+    require([runs / "slump_full" / "frames"])
+    return runs
 
 
 def main() -> None:
@@ -49,8 +53,6 @@ def main() -> None:
     spreads = {}
     for name, (label, style) in RUNS.items():
         directory = runs / name
-        if not (directory / "history.nc").exists():
-            continue
         history = xarray.load_dataset(directory / "history.nc")
         axes.plot(history.time, 1e3 * history.spread_diameter, label=label, **style)
         time, spread = history.time.values, history.spread_diameter.values
@@ -59,8 +61,7 @@ def main() -> None:
     axes.legend(frameon=False, fontsize=8, loc="lower right")
     sheet.savefig(DOCS / "images" / "full_size.png")
     apart(spreads)
-    if (runs / "slump_full" / "frames").exists():
-        section(runs / "slump_full")
+    section(runs / "slump_full")
 
 
 def row(directory: Path, label: str, time: np.ndarray, spread: np.ndarray) -> None:
@@ -85,8 +86,6 @@ def row(directory: Path, label: str, time: np.ndarray, spread: np.ndarray) -> No
 
 def apart(spreads: dict[str, tuple[np.ndarray, np.ndarray]]) -> None:
     """Largest departure of each from the body of revolution, as far as both go."""
-    if "slump" not in spreads:
-        return
     time, spread = spreads["slump"]
     for name, (t, found) in spreads.items():
         if name != "slump":

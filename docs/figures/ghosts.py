@@ -9,6 +9,7 @@ import numba
 import numpy as np
 from common import DOCS, figure, plot_reference
 from floors import hold_floor
+from options import parser
 
 import mpmkit
 
@@ -27,6 +28,7 @@ def spread(simulation: mpmkit.Simulation) -> list[float]:
 
 
 def main() -> None:
+    parser().parse_args()
     numba.set_num_threads(1)  # 900 particles are too few for more
     path = DOCS.parent / "cases/slump_as_published.json"
     mirror = mpmkit.Simulation(mpmkit.load_case(path, COARSE))

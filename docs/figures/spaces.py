@@ -7,6 +7,7 @@ Takes about three minutes, nearly all of them for the quarter.
 
 import numpy as np
 from common import DOCS, figure, plot_reference
+from options import parser
 
 import mpmkit
 
@@ -19,6 +20,7 @@ RUNS = (
 
 
 def main() -> None:
+    parser().parse_args()
     sheet, axes = figure("Slump, free-slip floor, 10 mm, the accurate set-up")
     plot_reference(axes)
     spreads = []

@@ -18,7 +18,7 @@ ACROSS = 10  # rows of the history, 0.3 s, over which a rate is taken
 
 
 def main() -> None:
-    (laws,) = data(__doc__, laws=["spread_diameter", "t500", "final_spread", "final_height"])
+    (laws,) = data(laws=["spread_diameter", "t500", "final_spread", "final_height"])
     sheet, (curves, spreads, rates) = panels(3, "Slump with one flow curve by four laws, 10 mm")
 
     rate = np.geomspace(1e-3, 20, 300)

@@ -26,7 +26,6 @@ ENDS = {
 
 def main() -> None:
     slump, bar, discs = data(
-        __doc__,
         schemes_slump=["spread_diameter", "t500", "final_spread"],
         schemes_bar=["kinetic_energy", "strain_energy"],
         schemes_discs=["kinetic_energy", "strain_energy"],

@@ -15,7 +15,6 @@ PULL, MASS = 0.02, 12.5
 
 def main() -> None:
     slump, bar, falling, particles = data(
-        __doc__,
         schemes_slump=["spread_diameter", "t500", "final_spread"],
         schemes_bar=["kinetic_energy", "strain_energy"],
         falling_bar=["kinetic_energy", "strain_energy"],

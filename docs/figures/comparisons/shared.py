@@ -6,7 +6,7 @@ runs/NAME/results.nc, which `mpmkit study cases/studies/NAME.json` leaves behind
 
 from __future__ import annotations
 
-import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,6 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).parents[1]))  # beside this folder lies what all figures share
+
+from options import parser, require
 
 DOCS = Path(__file__).parents[2]
 REFERENCE = DOCS.parent / "tests/validation/reference/slump_free_slip_herschel_bulkley.csv"
@@ -27,18 +31,14 @@ SHAPES = {"cpGIMP": {"color": BLUE}, "linear": {"color": RED}}
 """How the shape functions are drawn."""
 
 
-def data(description: str, **kept: Sequence[str]) -> list[xarray.Dataset]:
-    """The studies named, each with the variables that are kept of it.
-
-    Args:
-        description: of the script, for its --help.
-        kept: by study, the variables that the figure needs.
-    """
-    parser = argparse.ArgumentParser(
-        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--draw", action="store_true", help="from docs/data, without the studies' runs")
-    if not parser.parse_args().draw:
+def data(**kept: Sequence[str]) -> list[xarray.Dataset]:
+    """The studies named, each with the variables, ``kept``, that the figure needs of it."""
+    arguments = parser()
+    arguments.add_argument("--draw", action="store_true", help="from docs/data, without the studies' runs")
+    if arguments.parse_args().draw:
+        require(DOCS / "data" / f"{study}.nc" for study in kept)
+    else:
+        require(DOCS.parent / "runs" / study / "results.nc" for study in kept)
         for study, variables in kept.items():
             _keep(study, variables)
     return [xarray.load_dataset(DOCS / "data" / f"{study}.nc") for study in kept]

@@ -17,7 +17,7 @@ YIELD, VISCOSITY = "bodies.0.material.yield_stress", "bodies.0.material.plastic_
 
 def main() -> None:
     names = ["t500", "final_spread", "final_slump"]
-    runs, fine = data(__doc__, viscosity=names, viscosity_fine=names)
+    runs, fine = data(viscosity=names, viscosity_fine=names)
     sheet, plots = panels(2, "T500 of a Bingham fluid over its plastic viscosity")
     viscosity = np.linspace(0, 210, 50)
     for plot, stress in zip(plots, runs[YIELD].values, strict=True):

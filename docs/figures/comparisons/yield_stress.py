@@ -32,7 +32,7 @@ FINAL = ["final_spread", "final_slump"]
 
 
 def main() -> None:
-    fast, slow, thin = data(__doc__, yield_stress=FINAL, yield_stress_slow=FINAL, viscosity=["t500", *FINAL])
+    fast, slow, thin = data(yield_stress=FINAL, yield_stress_slow=FINAL, viscosity=["t500", *FINAL])
     fast, cone = fast.sel(cells="10 mm"), slow.sel(body="cone")
     sheet, (slip, stick, spread, cylinder) = panels(2, "Slump test at rest, over the yield stress", rows=2)
     stress = np.geomspace(10, 5000, 400)

@@ -15,6 +15,7 @@ from PIL import Image
 sys.path.insert(0, str(Path(__file__).parents[1]))  # beside this folder lies what all figures share
 
 from common import DOCS
+from options import parser, require
 
 sys.path.append(str(DOCS.parent / "tests/validation"))  # scenes whose answers are known are there already
 
@@ -23,7 +24,6 @@ BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#767676"
 """Okabe and Ito's palette."""
 COLOURS = {"usl": VERMILION, "usf": BLUE, "musl": GREEN}
 ORDERS = list(COLOURS)
-DRAW = "--draw"
 DPI = 160
 
 
@@ -47,7 +47,11 @@ def sheet(title: str, count: int, width: float = 9.6, height: float = 4.2) -> tu
 def make(name: str, measure: Callable[[], xarray.Dataset], draw: Callable[[xarray.Dataset], Figure]) -> None:
     """Measure, keep what was found in docs/data, and draw it; with --draw, draw what was kept."""
     data = DOCS / "data" / f"stability_{name}.nc"
-    if DRAW not in sys.argv[1:]:
+    arguments = parser()
+    arguments.add_argument("--draw", action="store_true", help="draw what was measured before")
+    if arguments.parse_args().draw:
+        require([data])
+    else:
         found = measure()
         packed = {variable: {"zlib": True} for variable in found if found[variable].dtype.kind == "f"}
         found.to_netcdf(data, encoding=packed)

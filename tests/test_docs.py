@@ -1,0 +1,76 @@
+"""The docs are whole, and the checks of continuous integration see it when they are not."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+CHECK = ROOT / "docs/check.py"
+
+
+@pytest.fixture
+def checks(tmp_path, monkeypatch):
+    """The checks, on a repository of their own that has nothing in it."""
+    spec = importlib.util.spec_from_file_location("docs_check", CHECK)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    (tmp_path / "docs/images").mkdir(parents=True)
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    monkeypatch.setattr(module, "DOCS", tmp_path / "docs")
+    return module
+
+
+def test_the_docs_are_whole():
+    found = subprocess.run([sys.executable, CHECK], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout) == (0, "the docs are whole\n")
+
+
+def test_a_mark_of_a_merge_is_found_in_any_file(checks, tmp_path):
+    (tmp_path / "notes.txt").write_text("one\n" + "<" * 7 + " HEAD\ntwo\n")
+    assert list(checks.merge_marks()) == ["notes.txt:2: the mark of a merge"]
+
+
+def test_dead_links_are_found(checks, tmp_path):
+    page = (
+        "# One heading\n[a](gone.md) [b](#one-heading) [c](#another) [d](https://example.org) `[e](code)`\n"
+    )
+    (tmp_path / "README.md").write_text(page)
+    assert list(checks.dead_links()) == [
+        "README.md: there is no 'gone.md'",
+        "README.md: there is no heading '#another' in 'README.md'",
+    ]
+
+
+def test_a_picture_that_no_script_makes_is_found(checks, tmp_path):
+    for name in ("made", "unmade"):
+        (tmp_path / f"docs/images/{name}.png").touch()
+    (tmp_path / "docs/page.md").write_text("![](images/made.png)\n![](images/unmade.png)\n")
+    script = '"""Draw docs/images/made.png."""\nif __name__ == "__main__":\n    pass\n'
+    (tmp_path / "docs/script.py").write_text(script)
+    assert list(checks.figures_without_a_source()) == [
+        "docs/images/unmade.png: no script names it in its docstring as what it makes"
+    ]
+
+
+def test_a_script_that_computes_when_asked_for_help_is_found(checks, tmp_path):
+    script = 'open("docs/page.md", "w").close()\nif __name__ == "__main__":\n    pass\n'
+    (tmp_path / "docs/script.py").write_text(script)
+    assert list(checks.scripts_without_help()) == [
+        "docs/script.py: --help ends with status 0 and no help",
+        "docs/script.py: --help changed files",
+    ]
+
+
+def test_numbers_of_the_readme_that_a_run_does_not_have_are_found(checks, tmp_path):
+    (tmp_path / "README.md").write_text((ROOT / "README.md").read_text(encoding="utf-8"), encoding="utf-8")
+    said = checks.README_NUMBERS.search((tmp_path / "README.md").read_text(encoding="utf-8")).groups()
+    summary = {"t500": float(said[0]), "final_spread": float(said[1])}
+    (tmp_path / "summary.json").write_text(json.dumps(summary))
+    assert list(checks.numbers_of_readme(tmp_path)) == []
+    (tmp_path / "summary.json").write_text(json.dumps(summary | {"t500": 0.7}))
+    assert list(checks.numbers_of_readme(tmp_path)) == [f"README.md: says {said[0]}, and it is 0.7000"]
