@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray
+from pairwise import every_pair
 
 import mpmkit
 from mpmkit.case import load_case, parse_case
@@ -90,11 +91,11 @@ def stopped_at_half(case, steps=45):
     return whole, again
 
 
-SCHEMES = [(order, shape) for order in ("usl", "usf", "musl") for shape in ("cpgimp", "linear")]
+ORDERS, SHAPES = ("usl", "usf", "musl"), ("cpgimp", "linear")
+OF_EACH_SPACE = ("slump_fast", "slump_quarter", "film")
 
 
-@pytest.mark.parametrize(("order", "shape"), SCHEMES)
-@pytest.mark.parametrize("name", COARSE)
+@every_pair("name, order, shape", COARSE, ORDERS, SHAPES)
 def test_every_case_with_every_order_and_shape(name, order, shape):
     schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
     case = load_case(CASES / f"{name}.json", [*COARSE[name], *schemes])
@@ -108,9 +109,7 @@ def test_stopped_where_the_limits_and_the_guards_are_looked_at_next(name):
     assert_same(*stopped_at_half(case, steps=4 * CONTROL_INTERVAL))
 
 
-@pytest.mark.parametrize(("order", "shape"), SCHEMES)
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("name", COARSE)
+@every_pair("law, name, order, shape", LAWS, OF_EACH_SPACE, ORDERS, SHAPES)
 def test_every_law_with_every_order_and_shape(name, law, order, shape):
     data = json.loads((CASES / f"{name}.json").read_text())
     for body in data["bodies"]:

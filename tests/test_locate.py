@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from blocks import Blocks
+from pairwise import every_pair
 
 from mpmkit.kernels import locate
 from mpmkit.kernels.compile import CHUNK, chunk_count
@@ -54,10 +55,10 @@ def test_a_particle_without_a_box_is_noticed(size):
     assert particles.ask() == (locate.LOST, 300)
 
 
-@pytest.mark.parametrize("p", [0, 300, 777, -1])
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize(
-    ("where", "verdict"),
+@every_pair(
+    "p, axis, place",
+    [0, 300, 777, -1],
+    [0, 1],
     [
         (lambda block: block - 0.5, locate.HERE),  # within a cell below its block
         (lambda block: block - 1.5, locate.STRAYED),
@@ -70,8 +71,8 @@ def test_a_particle_without_a_box_is_noticed(size):
         (lambda block: -np.inf, locate.LOST),
     ],
 )
-def test_a_particle_elsewhere_is_noticed(p, axis, where, verdict):
-    particles = Sorted()
+def test_a_particle_elsewhere_is_noticed(p, axis, place):
+    particles, (where, verdict) = Sorted(), place
     p %= len(particles.position)
     particles.position[p, axis] = where(particles.block[p, axis]) * particles.cell
     found, who = particles.ask()
@@ -126,9 +127,12 @@ def sound_state(n, dim=2):
     return [*state, rng.uniform(0.5, 2.0, n)]
 
 
-@pytest.mark.parametrize("bad", [[], [0], [CHUNK], [3 * CHUNK], [5, 2 * CHUNK + 7]], ids=str)
-@pytest.mark.parametrize("field", range(5))
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@every_pair(
+    "bad, field, value",
+    [[], [0], [CHUNK], [3 * CHUNK], [5, 2 * CHUNK + 7]],
+    range(5),
+    [np.nan, np.inf, -np.inf],
+)
 def test_the_first_unsound_particle(bad, field, value):
     state = sound_state(3 * CHUNK + 1)
     rows = state[field].reshape(len(state[field]), -1)

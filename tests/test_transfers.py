@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from blocks import Blocks
+from pairwise import every_pair
 from tensors import symmetric
 
 from mpmkit.kernels import gather, scatter
@@ -113,7 +114,8 @@ class Scene:
 
 
 CELL = 0.3
-spaces = pytest.mark.parametrize(("dim", "radial"), [(2, False), (2, True), (3, False)])
+SPACES = [(2, False), (2, True), (3, False)]
+spaces = pytest.mark.parametrize(("dim", "radial"), SPACES)
 supports = pytest.mark.parametrize("support", [2, 3])
 supports_of_averages = pytest.mark.parametrize("support", range(2, scatter.LARGEST_SUPPORT + 1))
 
@@ -188,16 +190,16 @@ def gathered(scene, grid):
     return new, change, L, C
 
 
-@spaces
-@supports
-@pytest.mark.parametrize("flip", [1.0, 0.0, 0.3])
-@pytest.mark.parametrize(
-    ("move", "strain", "affine"),
+@every_pair(
+    "space, support, flip, asked",
+    SPACES,
+    [2, 3],
+    [1.0, 0.0, 0.3],
     [(True, False, False), (False, True, False), (False, False, True), (True, True, True)],
-    ids=["move", "strain", "affine", "all"],
 )
-def test_gather(dim, radial, support, flip, move, strain, affine):
+def test_gather(space, support, flip, asked):
     """What is asked for, alone or in one pass; what is not stays untouched, as does a slope off the space."""
+    (dim, radial), (move, strain, affine) = space, asked
     scene, dt = Scene(dim, support, radial, affine=True), 0.07
     grid = scene.rng.normal(size=(scene.count, NODE))
     new, change, L, C = gathered(scene, grid)

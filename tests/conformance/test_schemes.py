@@ -1,4 +1,4 @@
-"""What every combination of shape function, update order and velocity update must do, in every space.
+"""What shape functions, update orders and velocity updates must do together, in every space.
 
 Mass and momentum are kept to rounding, results do not depend on the number of threads nor on where on the
 grid a body is, and mirrors and periodic faces stand for the scene that they replace.
@@ -11,13 +11,14 @@ from itertools import product
 import numba
 import numpy as np
 import pytest
+from pairwise import every_pair, pairwise
 
 from mpmkit.registry import installed
 from mpmkit.testing import flight, order_checks, scenes
 from mpmkit.testing.scenes import DX, RUBBER, SMALL_STEP, SPACES, by_number, shake
 
 REGISTRY = installed()
-SCHEMES = list(product(*(REGISTRY.of_kind(kind) for kind in ("shape", "order", "velocity"))))
+SCHEMES = pairwise(*(REGISTRY.of_kind(kind) for kind in ("shape", "order", "velocity")))
 VELOCITIES = list(REGISTRY.of_kind("velocity"))
 PAIRS = list(product(REGISTRY.of_kind("shape"), REGISTRY.of_kind("order")))
 FEWER_SCHEMES = [(*pair, VELOCITIES[i % len(VELOCITIES)]) for i, pair in enumerate(PAIRS)]
@@ -31,6 +32,8 @@ CONCRETE = {
     "flow_index": 1.33,
     "sound_speed": 10.0,
 }
+
+FLIGHTS = [flight.momentum, flight.free_fall, flight.uniform_motion]
 
 each_scheme = pytest.mark.parametrize("scheme", SCHEMES, ids="-".join)
 each_space = pytest.mark.parametrize("space", SPACES)
@@ -62,9 +65,7 @@ def test_conformance(check):
     check()
 
 
-@each_scheme
-@each_space
-@pytest.mark.parametrize("check", [flight.momentum, flight.free_fall, flight.uniform_motion])
+@every_pair("check, space, scheme", FLIGHTS, SPACES, SCHEMES)
 def test_free_flight(check, space, scheme):
     check(space, dict(zip(("shape", "order", "velocity"), scheme, strict=True), volumetric="own"))
 
@@ -210,9 +211,7 @@ def test_a_slip_floor_stands_for_the_mirrored_body(scheme):
 # --- Where on the grid --------------------------------------------------------------------------------------
 
 
-@each_scheme
-@pytest.mark.parametrize("direction", [1, -1], ids=["up", "down"])
-@pytest.mark.parametrize("axis", [0, 1])
+@every_pair("scheme, axis, direction", SCHEMES, [0, 1], [1, -1])
 def test_window_follows_a_fast_body(scheme, axis, direction):
     """A small body crosses many blocks of a big domain; not one gram is left outside the stored nodes."""
     lower, upper = [100, 100], [101, 102]
@@ -248,9 +247,7 @@ def test_motion_does_not_depend_on_the_place(scheme):
     np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-9 * DX)
 
 
-@each_scheme
-@pytest.mark.parametrize("direction", [1, -1], ids=["up", "down"])
-@pytest.mark.parametrize("axis", [0, 1])
+@every_pair("scheme, axis, direction", SCHEMES, [0, 1], [1, -1])
 def test_periodic_faces_wrap_the_unwrapped_motion(scheme, axis, direction):
     period = 8
     velocity = [0.0, 0.0]
