@@ -5,11 +5,12 @@ from .elastoviscoplastic import ElastoviscoplasticLaw
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
-from .law import ConstitutiveLaw, Motion, StateVariable
+from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
+from .version1 import Motion as Motion
 from .volumetric import VolumetricTreatment
 
 __all__ = [
@@ -20,7 +21,7 @@ __all__ = [
     "ElastoviscoplasticLaw",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
-    "Motion",
+    "Kinematics",
     "Operations",
     "Plugin",
     "ShapeFunction",

@@ -28,7 +28,7 @@ class StateVariable:
 
 
 @dataclass(frozen=True)
-class Motion:
+class Kinematics:
     """What a law is told of the particles that it governs. Tensors are 3 × 3 in every space.
 
     The components follow the axes of the grid; in two dimensions the third one is out of the plane
@@ -69,7 +69,7 @@ class ConstitutiveLaw(Plugin):
 
     @abstractmethod
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``.
 
@@ -91,7 +91,7 @@ class ConstitutiveLaw(Plugin):
         return []
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:
         """Elastic energy of shape per initial volume, J/m³, ``(n,)``; zero for a viscous fluid."""
         return 0.0
