@@ -21,7 +21,7 @@ class Swelling(ConstitutiveLaw):
     """A pressure of its own that grows with time: the chemistry of a grout, or a fault."""
 
     name = "swelling"
-    api_version = 1
+    api_version = 2
     citation = "none"
     uses_equation_of_state = False
     pressure: float = quantity("Pa", "pressure", ge=0)
@@ -44,7 +44,7 @@ class Forgetful(UpdateOrder):
     """Maps nothing to the grid."""
 
     name = "forgetful"
-    api_version = 1
+    api_version = 2
     citation = "none"
 
     def step(self, ops, dt):

@@ -68,7 +68,7 @@ def blamed(kind, plugin, steps=3):
 
 class Law(ConstitutiveLaw):
     name = "of-the-tests"
-    api_version = 1
+    api_version = 2
     citation = "none"
     state = {"age": StateVariable("s", "age")}
 
@@ -78,13 +78,13 @@ class Law(ConstitutiveLaw):
 
 class Viscous(GeneralisedNewtonianLaw):
     name = "of-the-tests"
-    api_version = 1
+    api_version = 2
     citation = "none"
 
 
 class Yielding(ElastoviscoplasticLaw):
     name = "of-the-tests"
-    api_version = 1
+    api_version = 2
     citation = "none"
 
 
@@ -203,7 +203,7 @@ def test_a_largest_viscosity_that_is_no_number():
 def test_a_pressure_that_cannot_be_used(given, reason):
     class Bad(EquationOfState):
         name = "of-the-tests"
-        api_version = 1
+        api_version = 2
         citation = "none"
 
         def pressure(self, volume_ratio, density, sound_speed):
@@ -228,7 +228,7 @@ def test_a_pressure_that_cannot_be_used(given, reason):
 def test_a_volumetric_treatment_that_cannot_be_used(average, rate, reason):
     class Bad(VolumetricTreatment):
         name = "of-the-tests"
-        api_version = 1
+        api_version = 2
         citation = "none"
 
         def average(self, ops, field):
@@ -243,7 +243,7 @@ def test_a_volumetric_treatment_that_cannot_be_used(average, rate, reason):
 def test_a_flip_that_is_no_number():
     class Bad(VelocityUpdate):
         name = "of-the-tests"
-        api_version = 1
+        api_version = 2
         citation = "none"
 
         def map_to_particles(self, ops, dt):
@@ -257,7 +257,7 @@ def hats(**changes):
 
     class Hats(ShapeFunction):
         name = "of-the-tests"
-        api_version = 1
+        api_version = 2
         citation = "none"
         support = 2
 

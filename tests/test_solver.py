@@ -21,7 +21,7 @@ class Hypoelastic(ConstitutiveLaw):
     """σ̇ = K tr(L) I: pressure of its own, from a state of its own, and no deformation gradient."""
 
     name = "hypoelastic"
-    api_version = 1
+    api_version = 2
     citation = "a test"
     uses_equation_of_state = False
     state = {"mean_stress": StateVariable("Pa", "mean stress")}

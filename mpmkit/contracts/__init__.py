@@ -1,6 +1,6 @@
 """What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
 
-from .base import API_VERSION, Plugin, quantity
+from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
 from .elastoviscoplastic import ElastoviscoplasticLaw
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
@@ -16,6 +16,7 @@ from .volumetric import VolumetricTreatment
 __all__ = [
     "API_VERSION",
     "KINDS",
+    "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
     "ConstitutiveLaw",
     "ElastoviscoplasticLaw",

@@ -1,4 +1,7 @@
-"""What version 1 of the contracts called otherwise, kept for the plug-ins that were written for it."""
+"""The names of version 1 of the contracts, for the plug-ins that were written for it.
+
+All that is deprecated is in this file.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,35 @@ from typing import Any
 
 import numpy as np
 
+from .base import API_VERSION, Plugin
 from .law import Kinematics
 from .operations import Operations, Weighting
 
 Motion = Kinematics
 """``Kinematics``, as version 1 called it."""
+
+
+CHANGES = (
+    "'Motion' is now 'Kinematics', 'ops.advance' is 'ops.move_particles', "
+    "and the argument 'measure' of averages is 'weighting'"
+)
+"""What must be written otherwise in version 2."""
+
+
+def deprecation(plugin: type[Plugin] | Plugin) -> str | None:
+    """What the author of a plug-in of an older version should change; None for one of the present version."""
+    if plugin.api_version == API_VERSION:
+        return None
+    return (
+        f"plug-in '{plugin.name}' is written for version {plugin.api_version} of the plug-in contracts, "
+        f"which a later mpmkit will not support; its author should write api_version = {API_VERSION}, "
+        f"and: {CHANGES} (docs/plugins.md#versions)"
+    )
+
+
+def operations_for(plugin: Plugin, operations: Operations) -> Operations:
+    """The operations under the names that a plug-in knows."""
+    return Version1Operations(operations) if plugin.api_version == 1 else operations  # type: ignore[return-value]
 
 
 class Version1Operations:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 
-from ..contracts import API_VERSION, KINDS, Plugin, ShapeFunction
+from ..contracts import API_VERSION, KINDS, OLDEST_API_VERSION, Plugin, ShapeFunction
 from ..contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
@@ -18,11 +18,7 @@ def check(plugin: type[Plugin], kind: str) -> None:
     contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
-    version = getattr(plugin, "api_version", None)
-    if version is None:
-        raise TypeError(f"{plugin.__name__} has no 'api_version'; this is version {API_VERSION}")
-    if version != API_VERSION:
-        raise ValueError(f"it is written for API version {version}, this is version {API_VERSION}")
+    _check_version(plugin)
     for attribute in ("name", "citation"):
         if not isinstance(getattr(plugin, attribute, None), str):
             raise TypeError(f"{plugin.__name__} has no '{attribute}'")
@@ -42,3 +38,22 @@ def check(plugin: type[Plugin], kind: str) -> None:
             f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
         )
     plugin.model_json_schema()  # a parameter that has none would break the schema of all
+
+
+def _check_version(plugin: type[Plugin]) -> None:
+    version = getattr(plugin, "api_version", None)
+    if version is None:
+        raise TypeError(
+            f"{plugin.__name__} has no 'api_version'; for this mpmkit write api_version = {API_VERSION}"
+        )
+    if type(version) is not int:
+        what = "text" if isinstance(version, str) else f"of type {type(version).__name__}"
+        raise TypeError(
+            f"its api_version is {version!r}, which is {what}; "
+            f"it must be a whole number, such as {API_VERSION}"
+        )
+    if OLDEST_API_VERSION <= version <= API_VERSION:
+        return
+    supported = f"this mpmkit supports versions {OLDEST_API_VERSION} to {API_VERSION}"
+    hint = "update mpmkit" if version > API_VERSION else "what has changed: docs/plugins.md#versions"
+    raise ValueError(f"it is written for version {version} of the plug-in contracts; {supported}; {hint}")

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case.model import Scheme
 from ..contracts.operations import Weighting
+from ..contracts.version1 import operations_for
 from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather
@@ -97,7 +98,7 @@ class SceneOperations:
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
-        self.scheme.order.step(self, dt)
+        self.scheme.order.step(operations_for(self.scheme.order, self), dt)
         self._stepped = True
 
     # --- Particles to nodes
@@ -145,7 +146,7 @@ class SceneOperations:
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
         self._gradient_due = velocity_gradient
-        self.scheme.velocity.map_to_particles(self, dt)
+        self.scheme.velocity.map_to_particles(operations_for(self.scheme.velocity, self), dt)
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
 
@@ -230,7 +231,8 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        treated, author = self.scheme.volumetric.average(self, field), self.scheme.volumetric
+        author = self.scheme.volumetric
+        treated = author.average(operations_for(author, self), field)
         if treated is not field:
             audit.require_shape(author, "average", treated, field.shape)
             if self._auditing:
@@ -241,7 +243,9 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        self.relaxation.relax(self.averager, self.scheme.volumetric.relaxation_rate(self), dt)
+        treatment = self.scheme.volumetric
+        rate = treatment.relaxation_rate(operations_for(treatment, self))
+        self.relaxation.relax(self.averager, rate, dt)
 
     # --- Fields in general
 

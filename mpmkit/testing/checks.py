@@ -121,7 +121,7 @@ class _Undamped(VelocityUpdate):
 
     name = "undamped"
     citation = "Brackbill & Ruppel, J. Comput. Phys. 65 (1986) 314-343"
-    api_version = 1
+    api_version = 2
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
         ops.move_particles(dt, flip=1.0)

@@ -21,7 +21,7 @@ class Thixotropic(ConstitutiveLaw):
     """
 
     name = "thixotropic"
-    api_version = 1
+    api_version = 2
     citation = "Roussel, Cem. Concr. Res. 36 (2006) 1797-1806"
     state = {"structure": StateVariable("1", "state of flocculation λ")}
 

@@ -28,7 +28,7 @@ def deviator(tensors):
 class Sound:
     """What every descriptor says."""
 
-    name, citation, api_version = "mutant", "none", 1
+    name, citation, api_version = "mutant", "none", 2
 
 
 class Oil(Sound, ConstitutiveLaw):

@@ -16,7 +16,7 @@ class NeoHookean(ConstitutiveLaw):
     """
 
     name = "neo-hookean"
-    api_version = 1
+    api_version = 2
     citation = "Wallstedt & Guilkey, J. Comput. Phys. 227 (2008) 9628-9642"
     uses_equation_of_state = False
     needs_deformation_gradient = True

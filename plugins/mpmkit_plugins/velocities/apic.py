@@ -19,7 +19,7 @@ class APIC(VelocityUpdate):
     """
 
     name = "apic"
-    api_version = 1
+    api_version = 2
     citation = "Jiang, Schroeder & Teran, J. Comput. Phys. 338 (2017) 137-164, with a rate"
     affine = True
     acoustic_fraction = 0.4

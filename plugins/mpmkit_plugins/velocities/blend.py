@@ -13,7 +13,7 @@ class Blend(VelocityUpdate):
     """
 
     name = "blend"
-    api_version = 1
+    api_version = 2
     citation = "Stomakhin et al., ACM Trans. Graph. 32 (2013) 102, with a rate instead of a fraction a step"
 
     rate: float = quantity(

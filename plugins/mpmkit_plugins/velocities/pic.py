@@ -7,7 +7,7 @@ class PIC(VelocityUpdate):
     """v ← ṽ: free of noise, at the price of a viscosity of about dx²/dt that grows as the step shrinks."""
 
     name = "pic"
-    api_version = 1
+    api_version = 2
     citation = "Harlow, Methods Comput. Phys. 3 (1964) 319-343"
 
     def cautions(self, case) -> list[str]:
