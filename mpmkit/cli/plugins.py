@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from typing import Any
 
 import click
 
@@ -20,7 +21,7 @@ def command(as_json: bool) -> None:
     from ..registry import installed
 
     registry = installed()
-    found = [
+    found: list[dict[str, Any]] = [
         {
             "kind": kind,
             "name": name,

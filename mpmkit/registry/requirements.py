@@ -5,7 +5,15 @@ from __future__ import annotations
 import inspect
 import re
 
-from ..contracts import API_VERSION, KINDS, OLDEST_API_VERSION, Plugin, ShapeFunction
+from ..contracts import (
+    API_VERSION,
+    KINDS,
+    OLDEST_API_VERSION,
+    ConstitutiveLaw,
+    Plugin,
+    ShapeFunction,
+    StateVariable,
+)
 from ..contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
@@ -37,6 +45,8 @@ def check(plugin: type[Plugin], kind: str) -> None:
         raise ValueError(
             f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
         )
+    if issubclass(plugin, ConstitutiveLaw):
+        _check_state(plugin)
     plugin.model_json_schema()  # a parameter that has none would break the schema of all
 
 
@@ -57,3 +67,20 @@ def _check_version(plugin: type[Plugin]) -> None:
     supported = f"this mpmkit supports versions {OLDEST_API_VERSION} to {API_VERSION}"
     hint = "update mpmkit" if version > API_VERSION else "what has changed: docs/plugins.md#versions"
     raise ValueError(f"it is written for version {version} of the plug-in contracts; {supported}; {hint}")
+
+
+def _check_state(law: type[ConstitutiveLaw]) -> None:
+    for name, variable in law.state.items():
+        if not isinstance(variable, StateVariable):
+            raise TypeError(f"its state '{name}' is {variable!r}; it must be a StateVariable")
+        if not isinstance(variable.initial, str):
+            try:
+                variable.at_start()
+            except ValueError as error:
+                raise ValueError(f"its state '{name}' {error}") from None
+        elif variable.initial not in law.model_fields and not hasattr(law, variable.initial):
+            parameters = ", ".join(law.model_fields) or "none"
+            raise ValueError(
+                f"its state '{name}' starts from '{variable.initial}', which is no parameter of the law; "
+                f"its parameters: {parameters}"
+            )

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
-from ..errors import GuardStop
+from ..errors import GuardStop, PluginFault
 from . import elastic, flight, law_promises, laws, radial, shapes
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
@@ -65,7 +65,7 @@ class Check:
         __tracebackhide__ = True  # pytest shows the sentence and not our code
         try:
             self.run()
-        except (Violation, GuardStop) as fault:
+        except (Violation, GuardStop, PluginFault) as fault:
             raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, Kinematics
+from ..contracts.law import initial_state
 
 DENSITY, SOUND_SPEED = 2574.0, 20.0
 """kg/m³ and m/s, of a slump of fresh concrete."""
@@ -29,10 +30,7 @@ class Specimens:
         self.sound_speed = sound_speed if law.uses_equation_of_state else None
         self.F = np.tile(np.eye(3), (n, 1, 1))
         self.voigt = np.zeros((n, 6))
-        self.state = {
-            name: np.full((n, *variable.shape), variable.initial, dtype=float)
-            for name, variable in law.state.items()
-        }
+        self.state = initial_state(law, n)
         self.work = np.zeros(n)
 
     def kinematics(self, L: np.ndarray) -> Kinematics:
