@@ -1,7 +1,9 @@
 """What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
 
+from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
 from .elastoviscoplastic import ElastoviscoplasticLaw
+from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
@@ -20,6 +22,7 @@ __all__ = [
     "REST_SHEAR_RATE",
     "ConstitutiveLaw",
     "ElastoviscoplasticLaw",
+    "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
     "Kinematics",
@@ -31,5 +34,7 @@ __all__ = [
     "VelocityUpdate",
     "VolumetricTreatment",
     "hookimpl",
+    "maxwell",
     "quantity",
+    "tensors",
 ]

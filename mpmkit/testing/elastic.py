@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import Kinematics
+from ..contracts.tensors import from_voigt
 from .law_subject import LawSubject
-from .specimens import plane, random_rotations, tensor
+from .specimens import plane, random_rotations
 from .violation import require_close
 
 
@@ -32,7 +33,7 @@ def stress(subject: LawSubject, F: np.ndarray) -> np.ndarray:
     """sigma, Pa, ``(n, 3, 3)``."""
     voigt = np.full((len(F), 6), np.nan)
     subject.law.update_stress(kinematics(subject, F), {}, 1e-3, voigt)
-    return tensor(voigt)
+    return from_voigt(voigt)
 
 
 def energy_gives_the_stress(subject: LawSubject) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..contracts import ConstitutiveLaw, Kinematics
 from ..contracts.law import initial_state
+from ..contracts.tensors import from_voigt
 
 DENSITY, SOUND_SPEED = 2574.0, 20.0
 """kg/m³ and m/s, of a slump of fresh concrete."""
@@ -76,12 +77,7 @@ class Specimens:
 
     @property
     def stress(self) -> np.ndarray:
-        return tensor(self.voigt)
-
-
-def tensor(voigt: np.ndarray) -> np.ndarray:
-    """``(n, 6)`` in the order xx, yy, zz, yz, xz, xy to ``(n, 3, 3)``."""
-    return voigt[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+        return from_voigt(self.voigt)
 
 
 def random_gradients(n: int, seed: int = 0, isochoric: bool = False) -> np.ndarray:
