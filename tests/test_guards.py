@@ -21,12 +21,12 @@ class Swelling(ConstitutiveLaw):
     """A pressure of its own that grows with time: the chemistry of a grout, or a fault."""
 
     name = "swelling"
-    api_version = 1
+    api_version = 2
     citation = "none"
     uses_equation_of_state = False
     pressure: float = quantity("Pa", "pressure", ge=0)
 
-    def update_stress(self, motion, state, dt, stress):
+    def update_stress(self, kinematics, state, dt, stress):
         stress[:, :3] = -self.pressure
 
     def wave_speed(self, density, sound_speed):
@@ -44,7 +44,7 @@ class Forgetful(UpdateOrder):
     """Maps nothing to the grid."""
 
     name = "forgetful"
-    api_version = 1
+    api_version = 2
     citation = "none"
 
     def step(self, ops, dt):

@@ -20,7 +20,7 @@ class Slurry(GeneralisedNewtonianLaw):
     '''mu = tau0 / (γ̇ + γ̇0) + mu_p, a plastic regularised by a shear rate.'''
 
     name = "slurry"
-    api_version = 1
+    api_version = 2
     citation = "nobody, nowhere (2024)"
 
     yield_stress: float = quantity("Pa", "yield stress", ge=0)
@@ -40,11 +40,32 @@ BROKEN = {
     "exit at import": ("raise SystemExit(3)\n", "SystemExit: 3"),
     "syntax error": ("def f(:\n", "SyntaxError"),
     "misspelt hook": (LAW.replace("def mpmkit_laws", "def mpmkit_law"), "did you mean mpmkit_laws?"),
-    "API version": (
-        LAW.replace("api_version = 1", "api_version = 2"),
-        "written for API version 2, this is version 1",
+    "newer version": (
+        LAW.replace("api_version = 2", "api_version = 3"),
+        "it is written for version 3 of the plug-in contracts; this mpmkit supports versions 1 to 2; "
+        "update mpmkit",
     ),
-    "no API version": (LAW.replace("    api_version = 1\n", ""), "Slurry has no 'api_version'"),
+    "older version": (
+        LAW.replace("api_version = 2", "api_version = 0"),
+        "it is written for version 0 of the plug-in contracts; this mpmkit supports versions 1 to 2; "
+        "what has changed: docs/plugins.md#versions",
+    ),
+    "version as text": (
+        LAW.replace("api_version = 2", 'api_version = "1"'),
+        "its api_version is '1', which is text; it must be a whole number, such as 2",
+    ),
+    "version as truth value": (
+        LAW.replace("api_version = 2", "api_version = True"),
+        "its api_version is True, which is of type bool; it must be a whole number, such as 2",
+    ),
+    "version with a point": (
+        LAW.replace("api_version = 2", "api_version = 1.0"),
+        "its api_version is 1.0, which is of type float; it must be a whole number, such as 2",
+    ),
+    "no version": (
+        LAW.replace("    api_version = 2\n", ""),
+        "Slurry has no 'api_version'; for this mpmkit write api_version = 2",
+    ),
     "no subclass": (LAW.replace("return [Slurry]", "return [int]"), "not a subclass of ConstitutiveLaw"),
     "no list": (LAW.replace("return [Slurry]", "return Slurry"), "must return a list of classes"),
     "registers nothing": ("x = 1\n", "registers nothing"),
@@ -179,7 +200,7 @@ def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
 
         class Own(VolumetricTreatment):
             name = "{name}"
-            api_version = 1
+            api_version = 2
             citation = "nobody"
 
             def average(self, ops, field):

@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 import mpmkit
-from mpmkit.contracts import ConstitutiveLaw, Motion, StateVariable, hookimpl, quantity
+from mpmkit.contracts import ConstitutiveLaw, Kinematics, StateVariable, hookimpl, quantity
 from mpmkit.errors import CaseError, GuardStop
 from mpmkit.registry import Registered, Registry, installed
 
@@ -21,7 +21,7 @@ class Hypoelastic(ConstitutiveLaw):
     """σ̇ = K tr(L) I: pressure of its own, from a state of its own, and no deformation gradient."""
 
     name = "hypoelastic"
-    api_version = 1
+    api_version = 2
     citation = "a test"
     uses_equation_of_state = False
     state = {"mean_stress": StateVariable("Pa", "mean stress")}
@@ -29,9 +29,11 @@ class Hypoelastic(ConstitutiveLaw):
     bulk_modulus: float = quantity("Pa", "bulk modulus K", gt=0)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        state["mean_stress"] += dt * self.bulk_modulus * np.trace(motion.velocity_gradient, axis1=1, axis2=2)
+        state["mean_stress"] += (
+            dt * self.bulk_modulus * np.trace(kinematics.velocity_gradient, axis1=1, axis2=2)
+        )
         stress[:, :3] = state["mean_stress"][:, None]
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
@@ -124,12 +126,12 @@ def test_a_particle_without_volume_stops_the_run():
 @pytest.mark.parametrize("shape", list(installed().of_kind("shape")))
 @pytest.mark.parametrize("faces", [{}, {"x_min": "slip", "z_min": "slip"}], ids=["open", "slip"])
 def test_general_mappings_average_and_reproduce(shape, faces):
-    """A constant comes back as itself, with walls or without, and the average is that of the measure."""
+    """A constant comes back as itself, with walls or without, and the average is that of the weights."""
     simulation = scene([box([0.0, 0.0], [1.0, 1.0])], faces, shape=shape)
     operations, p = simulation.operations, simulation.particles
     operations.begin()
-    for measure in ("mass", "volume"):
-        nodal = operations.particles_to_nodes(np.full(len(p), 3.5), measure)
+    for weighting in ("mass", "volume"):
+        nodal = operations.particles_to_nodes(np.full(len(p), 3.5), weighting)
         np.testing.assert_allclose(operations.nodes_to_particles(nodal), 3.5, rtol=1e-13)
     # A node is at the mean of what it sees once its support is full, ``support`` / 2 cells to each side.
     depth = 0.1 * installed().of_kind("shape")[shape].support

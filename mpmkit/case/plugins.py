@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..contracts import Plugin
+from ..contracts.version1 import deprecation
 from .model import Case
 
 
@@ -19,7 +20,7 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
 
 
 def cautions(case: Case) -> list[str]:
-    """A sentence for each thing that is known to fail, those of several materials once."""
-    return list(
-        dict.fromkeys(sentence for _, plugin in plugins_of(case) for sentence in plugin.cautions(case))
-    )
+    """A sentence for each thing that is known to fail, and for each plug-in of an older version, once."""
+    used = [plugin for _, plugin in plugins_of(case)]
+    said = [sentence for plugin in used for sentence in plugin.cautions(case)]
+    return list(dict.fromkeys([*said, *filter(None, map(deprecation, used))]))

@@ -9,8 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field, model_serializer, model_valid
 from pydantic.json_schema import GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-API_VERSION = 1
-"""Version of the plug-in contracts; a plug-in of another version is reported, not loaded."""
+API_VERSION = 2
+"""Version of the plug-in contracts; it rises where a plug-in must be changed to go on working."""
+OLDEST_API_VERSION = 1
+"""Oldest version whose plug-ins are still used; those of any version that is not supported are reported."""
 
 
 def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
@@ -51,7 +53,7 @@ class Plugin(BaseModel):
     name: ClassVar[str]
     citation: ClassVar[str]
     api_version: ClassVar[int]
-    """Version of the contracts that it is written for: its own number, so that an old one is noticed."""
+    """Version of the contracts that it is written for, as a number: so an old plug-in is noticed."""
 
     def cautions(self, case: Any) -> list[str]:
         """Sentences on what is known to fail where a case, whose fields are those of case files, uses it."""

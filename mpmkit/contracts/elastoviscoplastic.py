@@ -10,7 +10,7 @@ import numpy as np
 from . import maxwell
 from .base import quantity
 from .generalised_newtonian import REST_SHEAR_RATE
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
 
 
 class ElastoviscoplasticLaw(ConstitutiveLaw):
@@ -40,9 +40,9 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         return maxwell.solve(self.flow_curve, trial, stiffness, REST_SHEAR_RATE)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        maxwell.relax(motion, self._modulus(motion), dt, stress, self.relaxed_stress)
+        maxwell.relax(kinematics, self._modulus(kinematics), dt, stress, self.relaxed_stress)
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         speed = super().wave_speed(density, sound_speed)
@@ -55,9 +55,9 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         return [f"law '{self.name}' is elastic up to a strain of tau0/G = {percent}, G = {modulus:.4g} Pa"]
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray:
-        return maxwell.strain_energy(self._modulus(motion), motion, stress)
+        return maxwell.strain_energy(self._modulus(kinematics), kinematics, stress)
 
-    def _modulus(self, motion: Motion) -> float:
-        return maxwell.shear_modulus(self.shear_modulus, motion.density, motion.sound_speed)
+    def _modulus(self, kinematics: Kinematics) -> float:
+        return maxwell.shear_modulus(self.shear_modulus, kinematics.density, kinematics.sound_speed)

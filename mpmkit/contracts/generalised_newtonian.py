@@ -12,7 +12,7 @@ from pydantic import Field
 from ..kernels.tensors import shear_rate, viscous_stress
 from . import maxwell
 from .base import one_each
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
 
 REST_SHEAR_RATE = 1e-12
 """Shear rate, 1/s, that stands for rest, so that a law written as in the paper divides by no zero."""
@@ -41,14 +41,14 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         if self.form == "relaxed":
-            maxwell.relax(motion, self._modulus(motion), dt, stress, self._relaxed)
+            maxwell.relax(kinematics, self._modulus(kinematics), dt, stress, self._relaxed)
             return
-        rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
+        rate = shear_rate(kinematics.velocity_gradient, REST_SHEAR_RATE)
         viscosity = one_each(self.apparent_viscosity(rate), rate, "apparent_viscosity")
-        viscous_stress(motion.velocity_gradient, viscosity, stress)
+        viscous_stress(kinematics.velocity_gradient, viscosity, stress)
 
     def largest_viscosity(self, largest_shear_rate: float) -> float:
         if self.form == "relaxed":
@@ -73,14 +73,14 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         ]
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:
         if self.form == "explicit":
             return 0.0
-        return maxwell.strain_energy(self._modulus(motion), motion, stress)
+        return maxwell.strain_energy(self._modulus(kinematics), kinematics, stress)
 
-    def _modulus(self, motion: Motion) -> float:
-        return maxwell.shear_modulus(None, motion.density, motion.sound_speed)
+    def _modulus(self, kinematics: Kinematics) -> float:
+        return maxwell.shear_modulus(None, kinematics.density, kinematics.sound_speed)
 
     def _relaxed(self, trial: np.ndarray, stiffness: float) -> np.ndarray:
         return maxwell.solve(

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..errors import PluginFault
 from .base import Plugin
 
 LEAST_RATIO, MOST_RATIO = 0.1, 10.0
@@ -19,16 +20,43 @@ it was."""
 
 @dataclass(frozen=True)
 class StateVariable:
-    """A quantity that a law remembers at each particle."""
+    """A quantity that a law remembers at each particle.
+
+    >>> state = {"structure": StateVariable("1", "flocculation λ", initial="initial_structure")}
+    """
 
     unit: str
     description: str
     shape: tuple[int, ...] = ()
+    """Of its value at one particle; empty for a number."""
     initial: Any = 0.0
+    """Its value at the beginning: a number, an array of its shape, or the name of a parameter of the law (or
+    of a property of it), so that a case can give it."""
+
+    def at_start(self, law: ConstitutiveLaw | None = None) -> np.ndarray:
+        """The value at the beginning, of its shape.
+
+        Args:
+            law: the one that declares it; not needed where ``initial`` is no name.
+
+        Raises:
+            ValueError: there is no such value; the text says what is there and what is allowed.
+        """
+        named = isinstance(self.initial, str)
+        value = getattr(law, self.initial) if named else self.initial
+        try:
+            array = np.broadcast_to(np.asarray(value, dtype=float), self.shape)
+        except (TypeError, ValueError):
+            array = np.array(np.nan)
+        if not np.isfinite(array).all():
+            allowed = "a finite number" + (f" or an array of shape {self.shape}" if self.shape else "")
+            source = f"its '{self.initial}', which is {value!r}" if named else repr(value)
+            raise ValueError(f"starts from {source}; it must be {allowed}")
+        return array
 
 
 @dataclass(frozen=True)
-class Motion:
+class Kinematics:
     """What a law is told of the particles that it governs. Tensors are 3 × 3 in every space.
 
     The components follow the axes of the grid; in two dimensions the third one is out of the plane
@@ -47,6 +75,22 @@ class Motion:
     """``(n, 3, 3)``, F, if the law asks for it."""
     sound_speed: float | None = None
     """Sound speed of the equation of state, m/s; None for a law that has its own pressure."""
+
+
+def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:
+    """The state variables of so many particles at the beginning, each ``(count, *shape)``.
+
+    Raises:
+        PluginFault: one of them has no value there.
+    """
+    state = {}
+    for name, variable in law.state.items():
+        try:
+            start = variable.at_start(law)
+        except ValueError as error:
+            raise PluginFault(law, f"has a state '{name}' that {error}") from None
+        state[name] = np.full((count, *variable.shape), start)
+    return state
 
 
 class ConstitutiveLaw(Plugin):
@@ -69,7 +113,7 @@ class ConstitutiveLaw(Plugin):
 
     @abstractmethod
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``.
 
@@ -91,7 +135,7 @@ class ConstitutiveLaw(Plugin):
         return []
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:
         """Elastic energy of shape per initial volume, J/m³, ``(n,)``; zero for a viscous fluid."""
         return 0.0

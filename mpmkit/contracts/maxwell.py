@@ -15,19 +15,20 @@ Inelasticity (1998), ch. 2.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from ..kernels.elastic import elastic_trial, shrink, stored
 from .base import one_each
-from .law import Motion
+from .law import Kinematics
 
 STIFFNESS = 0.05
 """G over ρ c² where a case does not give G: as stiff as costs nothing, since it raises the wave speed, and
 with it the number of steps, by 3 %. A yield stress is then reached at a strain of τ0 / (0.05 ρ c²)."""
 
-Curve = Callable[[np.ndarray], np.ndarray]
+Curve = Callable[..., np.ndarray]
+"""Shear stress, Pa, of steady shear at rates ``(m,)``, 1/s; and of the state, where a law has one."""
 
 
 def shear_modulus(given: float | None, density: float, sound_speed: float | None) -> float:
@@ -44,48 +45,62 @@ def wave_speed(modulus: float, density: float, sound_speed: float) -> float:
 
 
 def relax(
-    motion: Motion,
+    kinematics: Kinematics,
     modulus: float,
     dt: float,
     stress: np.ndarray,
     relaxed: Callable[[np.ndarray, float], np.ndarray],
 ) -> None:
-    """Advance ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
+    """Update ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
     trial = np.empty(len(stress))
-    elastic_trial(motion.velocity_gradient, dt, modulus, stress, trial)
+    elastic_trial(kinematics.velocity_gradient, dt, modulus, stress, trial)
     shrink(stress, trial, one_each(relaxed(trial, modulus * dt), trial, "relaxed_stress"))
 
 
-def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndarray:
+def strain_energy(modulus: float, kinematics: Kinematics, stress: np.ndarray) -> np.ndarray:
     """J s:s / (4 G), J/m³ of initial volume."""
     energy = np.empty(len(stress))
-    stored(stress, motion.volume_ratio, modulus, energy)
+    stored(stress, kinematics.volume_ratio, modulus, energy)
     return energy
 
 
-def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) -> np.ndarray:
+def solve(
+    flow_curve: Curve,
+    trial: np.ndarray,
+    stiffness: float,
+    least_rate: float,
+    state: Mapping[str, np.ndarray] | None = None,
+) -> np.ndarray:
     """τ of f(γ̇) + G Δt γ̇ = τ* for any rising flow curve, by the Illinois rule on 0 <= γ̇ <= τ*/(G Δt).
 
     Every third step halves the bracket on a logarithmic scale instead, since a flow curve may turn anywhere.
 
     Args:
-        curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is the
-            yield stress.
+        flow_curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is
+            the yield stress.
         trial: τ*, ``(n,)``, Pa.
         stiffness: G Δt, Pa s.
         least_rate: shear rate that stands for rest, 1/s.
+        state: arrays ``(n, …)``; where it is given, f gets those of the same particles as a second argument.
 
     Raises:
         ArithmeticError: no rate is found; the curve does not rise.
     """
     result = trial.copy()
     low = np.full(len(trial), least_rate)
-    at_rest = curve(low)
+    at_rest = flow_curve(low) if state is None else flow_curve(low, state)
     if np.ndim(at_rest):  # a constant will do
         one_each(at_rest, low, "the flow curve")
     flows = np.flatnonzero(at_rest + stiffness * low < trial)
     if not len(flows):
         return result
+    curve = flow_curve
+    if state is not None:
+        of_those = {name: array[flows] for name, array in state.items()}
+
+        def curve(rate):
+            return flow_curve(rate, of_those)
+
     target, low = trial[flows], low[flows]
     high = np.maximum(target / stiffness, least_rate)
     with np.errstate(over="ignore"):  # a curve may be beyond any number at the rate of the spring alone

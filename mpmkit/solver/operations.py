@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from ..case.model import Scheme
-from ..contracts.operations import Measure
+from ..contracts.operations import Weighting
+from ..contracts.version1 import operations_for
 from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather
@@ -97,7 +98,7 @@ class SceneOperations:
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
-        self.scheme.order.step(self, dt)
+        self.scheme.order.step(operations_for(self.scheme.order, self), dt)
         self._stepped = True
 
     # --- Particles to nodes
@@ -145,11 +146,11 @@ class SceneOperations:
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
         self._gradient_due = velocity_gradient
-        self.scheme.velocity.map_to_particles(self, dt)
+        self.scheme.velocity.map_to_particles(operations_for(self.scheme.velocity, self), dt)
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
 
-    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+    def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
         if not math.isfinite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
@@ -183,12 +184,16 @@ class SceneOperations:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
-        p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
+        p, kinematics, stress = (
+            self.particles,
+            self.particles.kinematics(group),
+            self.particles.stress[group.part],
+        )
         if self._rehearsing:
-            audit.rehearse_law(group.law, motion, group.state, stress, dt, p.number[group.part])
-        group.law.update_stress(motion, group.state, dt, stress)
+            audit.rehearse_law(group.law, kinematics, group.state, stress, dt, p.number[group.part])
+        group.law.update_stress(kinematics, group.state, dt, stress)
         if self._auditing:
-            audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
+            audit.require_stress(group.law, kinematics, dt, stress, p.number[group.part])
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
@@ -226,7 +231,8 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        treated, author = self.scheme.volumetric.average(self, field), self.scheme.volumetric
+        author = self.scheme.volumetric
+        treated = author.average(operations_for(author, self), field)
         if treated is not field:
             audit.require_shape(author, "average", treated, field.shape)
             if self._auditing:
@@ -237,29 +243,31 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        self.relaxation.relax(self.averager, self.scheme.volumetric.relaxation_rate(self), dt)
+        treatment = self.scheme.volumetric
+        rate = treatment.relaxation_rate(operations_for(treatment, self))
+        self.relaxation.relax(self.averager, rate, dt)
 
     # --- Fields in general
 
-    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.averager.at_particles()
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         self.window.average[:, 0] = nodal
         return self.averager.at_particles()
 
-    def _weights(self, name: Measure) -> np.ndarray:
+    def _weights(self, weighting: Weighting) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
-        measure = p.mass if name == "mass" else p.volume
-        if name != "mass" and not all(group.law.uses_equation_of_state for group in p.groups):
-            measure = measure.copy()
-            for group in p.groups:
-                if not group.law.uses_equation_of_state:
-                    measure[group.part] = 0.0
-        return measure
+        if weighting == "mass" or all(group.law.uses_equation_of_state for group in p.groups):
+            return p.mass if weighting == "mass" else p.volume
+        weights = p.volume.copy()
+        for group in p.groups:
+            if not group.law.uses_equation_of_state:
+                weights[group.part] = 0.0
+        return weights

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
 from ..kernels.sort import permute
 
 
@@ -111,10 +111,10 @@ class Particles:
             for array in group.state.values():
                 array[...] = array[local]
 
-    def motion(self, group: Group) -> Motion:
+    def kinematics(self, group: Group) -> Kinematics:
         """What the law of a group is told of its particles."""
         part, F = group.part, self.deformation_gradient
-        return Motion(
+        return Kinematics(
             velocity_gradient=self.velocity_gradient[part],
             volume_ratio=self.volume_ratio[part],
             pressure=self.pressure[part],

@@ -86,6 +86,6 @@ def _only(p: Particles, group: Group) -> np.ndarray:
     """Initial volumes of a material, zero for the others."""
     if len(p.groups) == 1:
         return p.initial_volume
-    measure = np.zeros(len(p))
-    measure[group.part] = p.initial_volume[group.part]
-    return measure
+    weights = np.zeros(len(p))
+    weights[group.part] = p.initial_volume[group.part]
+    return weights

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..case.model import Body, Case, Material
 from ..case.sound_speed import SoundSpeedMach
+from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import Sample, sample
 from .particles import Group, Particles
@@ -92,10 +93,7 @@ def _group(case: Case, material: Material, part: slice) -> Group:
         sound_speed=case.sound_speed(material),
         mach=material.sound_speed.mach if isinstance(material.sound_speed, SoundSpeedMach) else None,
         part=part,
-        state={
-            name: np.full((count, *variable.shape), variable.initial, dtype=float)
-            for name, variable in law.state.items()
-        },
+        state=initial_state(law, count),
     )
 
 

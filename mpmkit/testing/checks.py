@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
-from ..errors import GuardStop
+from ..errors import GuardStop, PluginFault
 from . import elastic, flight, law_promises, laws, radial, shapes
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
@@ -26,7 +26,7 @@ ON_LAWS = (
     laws.batch_order,
     laws.swelling,
     law_promises.declared_state,
-    law_promises.leaves_the_motion_alone,
+    law_promises.leaves_the_kinematics_alone,
     law_promises.wave_speed,
     law_promises.largest_viscosity,
     law_promises.remarks,
@@ -65,7 +65,7 @@ class Check:
         __tracebackhide__ = True  # pytest shows the sentence and not our code
         try:
             self.run()
-        except (Violation, GuardStop) as fault:
+        except (Violation, GuardStop, PluginFault) as fault:
             raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
 
 
@@ -121,7 +121,7 @@ class _Undamped(VelocityUpdate):
 
     name = "undamped"
     citation = "Brackbill & Ruppel, J. Comput. Phys. 65 (1986) 314-343"
-    api_version = 1
+    api_version = 2
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=1.0)
+        ops.move_particles(dt, flip=1.0)

@@ -159,7 +159,7 @@ def test_general_solution_of_a_curve_that_falls_is_refused():
 
 def test_perfect_plasticity_by_a_scalar():
     class Plastic(ElastoviscoplasticLaw):
-        name, citation, api_version = "plastic", "none", 1
+        name, citation, api_version = "plastic", "none", 2
 
         def flow_curve(self, shear_rate):
             return 50.0

@@ -16,7 +16,7 @@ class Bingham(GeneralisedNewtonianLaw):
     """
 
     name = "bingham"
-    api_version = 1
+    api_version = 2
     citation = "Bingham, Fluidity and Plasticity (1922); Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     exact_form = "bingham-evp"

@@ -19,7 +19,7 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
     """
 
     name = "herschel-bulkley"
-    api_version = 1
+    api_version = 2
     citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     exact_form = "herschel-bulkley-evp"

@@ -28,7 +28,7 @@ class NodalAverage(VolumetricTreatment):
     """
 
     name = "nodal-average"
-    api_version = 1
+    api_version = 2
     citation = (
         "Love & Sulsky, Int. J. Numer. Meth. Eng. 65 (2006) 1608-1638, carried over to rate and pressure"
     )
