@@ -2,7 +2,10 @@
 
 import copy
 import json
+import re
 import time
+import tomllib
+from pathlib import Path
 
 import pytest
 from test_case import GOOD, MATERIAL, changed, sentence
@@ -158,3 +161,18 @@ def test_a_key_that_stands_twice_among_many_is_found_at_once(tmp_path):
     begin = time.perf_counter()
     assert "'k99999' stands twice" in sentence(load_case, file)
     assert time.perf_counter() - begin < 2
+
+
+def test_what_is_said_to_install_is_what_the_extras_hold():
+    """By the names of the packages, so that it works outside a registry that has mpmkit."""
+    root = Path(__file__).parents[1]
+    extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    texts = {file: file.read_text(encoding="utf-8") for file in (*root.glob("docs/*.md"), root / "README.md")}
+    texts |= {file: file.read_text(encoding="utf-8") for file in root.glob("mpmkit/**/*.py")}
+    assert not [str(file) for file, text in texts.items() if re.search(r"pip install\s+'?mpmkit\[", text)]
+    for extra, requirements in extras.items():
+        if extra in ("mesh", "cluster"):
+            said = [text for text in texts.values() if f"pip install '.[{extra}]'" in text]
+            assert said, extra
+            names = " ".join(re.split(r"[><=]", requirement)[0] for requirement in requirements)
+            assert all(f"pip install {names}" in text for text in said), extra
