@@ -358,7 +358,7 @@ def test_a_resolved_case_says_where_a_body_stands_and_can_be_run():
     [
         ("", "the case file is empty"),
         ("[]", "a case must be a JSON object, not []"),
-        ("{,}", "is not valid JSON: Expecting property name enclosed in double quotes at line 1, column 2"),
+        ("{,}", "is not valid JSON: at line 1, column 2, there is a comma too many"),
         ('{"until": 1, "until": 2}', "the key 'until' stands twice in one object"),
         ('{"a": {"b": 1, "b": 1}}', ": a: the key 'b' stands twice"),
         ('{"a": [{"b": 1}, {"b": {"c": 1, "c": 1}}], "d": NaN}', ": a.1.b: the key 'c' stands twice"),

@@ -10,9 +10,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .allowed import nearest, shown
+from .allowed import shown
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .synonyms import nearest
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""

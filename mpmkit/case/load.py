@@ -15,6 +15,7 @@ from ..geometry import FILES
 from ..registry import Registry, installed
 from .allowed import shown
 from .composed import case_model
+from .json_mistakes import mistake
 from .messages import explain
 from .model import Case
 from .overrides import apply_overrides
@@ -105,8 +106,7 @@ def read_json(path: str | Path, what: str = "case") -> Any:
     try:
         return decode(text)
     except json.JSONDecodeError as error:
-        reason = f"{error.msg} at line {error.lineno}, column {error.colno}"
-        raise CaseError(f"{path}: the {what} file is not valid JSON: {reason}") from None
+        raise CaseError(f"{path}: the {what} file is not valid JSON: {mistake(text, error)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 

@@ -20,29 +20,11 @@ from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
+from .faces import Face
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
 STANDARD_GRAVITY = 9.81
-
-
-class Friction(Model):
-    """A Coulomb wall: it pushes but does not pull, and drags with at most ``coefficient`` times its push."""
-
-    kind: Literal["friction"]
-    coefficient: float = quantity("1", "Coulomb friction coefficient", ge=0)
-
-
-FaceName = Literal["slip", "stick", "periodic", "open", "symmetry"]
-
-
-def _face_tag(value: Any) -> str:
-    return "name" if isinstance(value, str) else "friction"
-
-
-Face = Annotated[
-    Annotated[FaceName, Tag("name")] | Annotated[Friction, Tag("friction")], Discriminator(_face_tag)
-]
 
 
 class Grid(Model):

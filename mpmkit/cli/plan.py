@@ -47,11 +47,16 @@ def command(
         *cost["remarks"],
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
     ]
-    click.echo("\n".join([*lines, *_advice(case, cost)]))
+    asked = [f"--set {shlex.quote(override)}" for override in overrides]
+    asked += [] if until is None else [f"--until {until!r}"]
+    click.echo("\n".join([*lines, *_advice(" ".join([shlex.quote(case), *asked]), cost)]))
 
 
-def _advice(case: str, cost: dict) -> list[str]:
-    """A table of the scene as it stands and of cheaper models, and how to ask for them."""
+def _advice(asked: str, cost: dict) -> list[str]:
+    """A table of the scene as it stands and of cheaper models, and how to run them.
+
+    ``asked`` is the case with the options that it was given: a model's own come after them, and so over them.
+    """
     if not cost["cheaper"]:
         return []
     models = [{"name": "as it stands"} | cost, *cost["cheaper"]]
@@ -64,10 +69,13 @@ def _advice(case: str, cost: dict) -> list[str]:
             f"{duration(max(1.0, model['expected_seconds'])):>8}  "
             f"{'not known' if error is None else f'{100 * error:.2g} %'}"
         )
-    lines += ["* to expect: that of the most similar member of the shipped study of a slump", ""]
+    lines += [
+        "* to expect in the first 1.5 s; known only where all else is as in the shipped study of a slump",
+        "",
+    ]
     for model in cost["cheaper"]:
         options = " ".join(f"--set {shlex.quote(option)}" for option in model["options"])
-        lines += [f"{model['name']}: {model['why']}", f"    mpmkit run {shlex.quote(case)} {options}"]
+        lines += [f"{model['name']}: {model['why']}", f"    mpmkit run {asked} {options}"]
     return lines
 
 

@@ -27,6 +27,9 @@ STIFFNESS = 0.05
 """G over ρ c² where a case does not give G: as stiff as costs nothing, since it raises the wave speed, and
 with it the number of steps, by 3 %. A yield stress is then reached at a strain of τ0 / (0.05 ρ c²)."""
 
+CLOSE = 1e-13
+"""Part of τ* by which f(γ̇) + G Δt γ̇ may miss it."""
+
 Curve = Callable[..., np.ndarray]
 """Shear stress, Pa, of steady shear at rates ``(m,)``, 1/s; and of the state, where a law has one."""
 
@@ -78,7 +81,7 @@ def solve(
     Args:
         flow_curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is
             the yield stress.
-        trial: τ*, ``(n,)``, Pa.
+        trial: τ*, ``(n,)``, Pa. What either gives in single precision is solved to what it can tell apart.
         stiffness: G Δt, Pa s.
         least_rate: shear rate that stands for rest, 1/s.
         state: arrays ``(n, …)``; where it is given, f gets those of the same particles as a second argument.
@@ -89,6 +92,7 @@ def solve(
     result = trial.copy()
     low = np.full(len(trial), least_rate)
     at_rest = flow_curve(low) if state is None else flow_curve(low, state)
+    close = _close(at_rest)
     if np.ndim(at_rest):  # a constant will do
         one_each(at_rest, low, "the flow curve")
     flows = np.flatnonzero(at_rest + stiffness * low < trial)
@@ -121,7 +125,7 @@ def solve(
         tried = (low * above - high * below) / (above - below) if step % 3 else np.sqrt(low * high)
         rate = np.where(open_, tried, rate)
         rest = curve(rate) + stiffness * rate - target
-        open_ &= np.abs(rest) > 1e-13 * target
+        open_ &= np.abs(rest) > close * target
         if not open_.any():
             break
         up = rest > 0
@@ -132,5 +136,12 @@ def solve(
         side = np.where(up, 1, -1).astype(np.int8)
     else:
         raise ArithmeticError(f"no shear rate gives {target[open_][0]:.6g} Pa: the flow curve must rise")
-    result[flows] = target - stiffness * rate
+    # Of two forms of τ, the second does not magnify the rounding of a curve that is not of double precision.
+    result[flows] = target - stiffness * rate if close == CLOSE else curve(rate)
     return result
+
+
+def _close(values: np.ndarray) -> float:
+    """``CLOSE``, or what the numbers of a flow curve can tell apart if they are not doubles."""
+    dtype = np.result_type(values)
+    return max(CLOSE, 8 * float(np.finfo(dtype).eps)) if np.issubdtype(dtype, np.floating) else CLOSE

@@ -20,7 +20,7 @@ from .mesh_file import as_ply, read_surface
 class Mesh(Shape):
     """Solid inside a closed surface of triangles or quadrilaterals, x = scale · x_file + translate.
 
-    Only in 3-D; needs ``mpmkit[mesh]``. Normals that point inwards are turned; a shell within another is a
+    Only in 3-D; needs libigl and trimesh. Normals that point inwards are turned; a shell within another is a
     cavity.
     """
 
@@ -111,7 +111,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
     except ImportError:
         raise CaseError(
             f"the mesh's file is {shown}, but bodies given as a mesh need libigl and trimesh: "
-            "pip install 'mpmkit[mesh]'"
+            "pip install libigl trimesh, or pip install '.[mesh]' in a clone of mpmkit"
         ) from None
     vertices, faces = read_surface(path, shown)
     name = name_by_content(as_ply(vertices, faces), ".ply")

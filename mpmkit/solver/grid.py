@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..case.model import Case, Friction
+from ..case.faces import Friction
+from ..case.model import Case
 from ..kernels import nodes as node_kernels
 from ..kernels.scatter import CONTACT, NODE, PAIR
 from ..kernels.vectors import LANES
