@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import sys
@@ -11,7 +12,17 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from mpmkit.errors import CaseError
-from mpmkit.geometry import AnyShape, Box, Cylinder, Frustum, Mesh, Sphere, expected_count, sample
+from mpmkit.geometry import (
+    AnyShape,
+    Box,
+    Cylinder,
+    Frustum,
+    Mesh,
+    Sphere,
+    expected_count,
+    sample,
+    shared_volume,
+)
 from mpmkit.spaces import SPACES
 
 SOLID, PLANE, RADIAL = SPACES["3d"], SPACES["plane-strain"], SPACES["axisymmetric"]
@@ -117,23 +128,147 @@ def test_the_seeds_cone_has_the_published_number_of_particles():
 @pytest.mark.parametrize("shape", [CONE, ROD, BALL], ids=lambda shape: shape.kind)
 @pytest.mark.parametrize("per_axis", [1, 2, 3])
 def test_a_quarter_has_a_quarter_of_the_mass(shape, per_axis):
-    whole = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
+    all_of_it = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
     keep = ([0, 0, 0], [1, 1, 1])
     quarter = fill(shape, SOLID, 0.02, per_axis, keep=keep)
-    assert 4 * len(quarter.volume) == len(whole.volume)
+    assert 4 * len(quarter.volume) == len(all_of_it.volume)
     assert quarter.volume.sum() == pytest.approx(shape.volume(SOLID) / 4, rel=1e-12)
     assert (quarter.position > 0).all()
+    assert set(quarter.volume) == set(all_of_it.volume)  # to the bit
     count = expected_count(shape, SOLID, 0.02, [per_axis] * 3)
     assert expected_count(shape, SOLID, 0.02, [per_axis] * 3, keep) == pytest.approx(count / 4)
 
 
-def test_boxes_side_by_side_share_no_particle():
-    whole = fill(BALL, SOLID)
-    halves = [
-        fill(BALL, SOLID, keep=([low, -1, -1], [high, 1, 1])) for low, high in ((-1, 0.0025), (0.0025, 1))
-    ]
-    assert sum(len(half.volume) for half in halves) == len(whole.volume)
-    assert sum(half.volume.sum() for half in halves) == pytest.approx(BALL.volume(SOLID), rel=1e-12)
+@pytest.mark.parametrize("place", [0.005, 0.0025, 0.0431, -0.0999])
+def test_parts_side_by_side_share_no_room_and_weigh_what_they_hold(place):
+    parts = [fill(BALL, SOLID, keep=([low, -1, -1], [high, 1, 1])) for low, high in ((-1, place), (place, 1))]
+    for part, depth in zip(parts, (place + 0.1, 0.1 - place), strict=True):
+        cap = math.pi * depth**2 * (0.3 - depth) / 3
+        assert part.volume.sum() == pytest.approx(cap, rel=1e-9) or depth < 0.0025  # thinner than half a box
+    assert ((parts[0].position + parts[0].half_size)[:, 0] <= place + 1e-15).all()
+    assert ((parts[1].position - parts[1].half_size)[:, 0] >= place - 1e-15).all()
+
+
+FACES = {"a lattice plane": 0.03, "a sliver": 0.0302, "a quarter": 0.03125, "half": 0.0325, "most": 0.0347}
+
+
+@pytest.mark.parametrize("end", FACES.values(), ids=FACES)
+@pytest.mark.parametrize("start", [0.0, 0.0049, 0.0101, 0.0024, 0.0076])
+@pytest.mark.parametrize("space", [SOLID, PLANE, RADIAL], ids=lambda space: space.name)
+@pytest.mark.parametrize(("per_axis", "least", "most"), [(1, 0.5, 1.0), (2, 0.75, 1.5)])
+def test_the_boxes_of_a_block_tile_it_wherever_its_faces_are(space, start, end, per_axis, least, most):
+    """Without a factor of volume: no slivers, none wider than a cell, side by side, from face to face."""
+    block = Box(kind="box", lower=[start] * space.dim, upper=[*[0.02 + start] * (space.dim - 1), end])
+    particles = fill(block, space, per_axis=per_axis)
+    low, high = particles.position - particles.half_size, particles.position + particles.half_size
+    np.testing.assert_allclose(low.min(axis=0), block.lower, atol=1e-16)
+    np.testing.assert_allclose(high.max(axis=0), block.upper, atol=1e-16)
+    widths = 2 * particles.half_size * per_axis / 0.01
+    assert (widths >= least * (1 - 1e-9)).all()
+    assert (widths <= most * (1 + 1e-9)).all()
+    own = space.particle_volume(particles.position, 2 * particles.half_size)
+    np.testing.assert_allclose(particles.volume, own, rtol=1e-12)
+    assert own.sum() == pytest.approx(block.volume(space), rel=1e-12)
+    for axis in range(space.dim):
+        ends = np.unique(np.round(np.concatenate([low[:, axis], high[:, axis]]), 12))
+        assert len(ends) == len(np.unique(np.round(particles.position[:, axis], 12))) + 1
+
+
+@pytest.mark.parametrize(("shape", "space"), [(ROD, SOLID), (ROD, RADIAL), (CONE, SOLID), (CONE, PLANE)])
+def test_the_flat_ends_of_a_round_body_stay_where_they_are(shape, space):
+    body = shape.model_copy(update={"height": 0.2126, "base": [0.0] * (space.dim - 1) + [0.0017]})
+    particles = fill(body, space, 0.025)
+    assert (particles.position - particles.half_size)[:, -1].min() == pytest.approx(0.0017, abs=1e-15)
+    assert (particles.position + particles.half_size)[:, -1].max() == pytest.approx(0.2143, abs=1e-15)
+    assert particles.volume.sum() == pytest.approx(body.volume(space), rel=1e-12)
+    if space.radial:
+        assert (particles.position + particles.half_size)[:, 0].max() == pytest.approx(0.1, abs=1e-15)
+
+
+@each
+def test_parts_of_a_shape_add_up_to_the_points_in_them(shape, space, volume):
+    lower, upper = shape.bounds(space)
+    place = lower + np.array([0.31, 0.62, 0.83])[: space.dim] * (upper - lower)
+    points = np.random.default_rng(3).uniform(lower, upper, (200_000, space.dim))
+    weight = space.particle_volume(points, upper - lower) * shape.contains(points, space) / len(points)
+    for above in itertools.product((False, True), repeat=space.dim):
+        low, high = np.where(above, place, lower), np.where(above, upper, place)
+        inside = ((points >= low) & (points <= high)).all(axis=1)
+        found = shape.volume_between(low, high, space)
+        assert found == pytest.approx(weight[inside].sum(), abs=0.005 * volume)
+    assert shape.volume_between(lower - 1, upper + 1, space) == shape.volume(space)
+    assert shape.volume_between(upper + 1, upper + 2, space) == 0
+
+
+def test_parts_of_round_bodies_are_exact():
+    """A cap of a sphere, a segment of a cylinder, and a ring of a cone."""
+    big = np.array([1.0, 1.0, 1.0])
+    cap = BALL.volume_between(np.array([0.04, -1, -1]), big, SOLID)
+    assert cap == pytest.approx(math.pi * 0.06**2 * (0.3 - 0.06) / 3, rel=1e-10)
+    segment = 0.01 * math.acos(0.4) - 0.04 * math.sqrt(0.01 - 0.04**2)
+    assert ROD.volume_between(np.array([0.04, -1, -1]), big, SOLID) == pytest.approx(0.2 * segment, rel=1e-12)
+    # Above r = 0.07 the cone's wall reaches to z = 0.18.
+    ring = math.pi * 0.18 / 3 * (0.01 + 0.007 + 0.0049) - math.pi * 0.0049 * 0.18
+    assert CONE.volume_between(np.array([0.07, 0]), big[:2], RADIAL) == pytest.approx(ring, rel=1e-12)
+
+
+@each
+@pytest.mark.parametrize("place", [0.02, 0.036, 0.0431])
+def test_a_body_cut_off_centre_has_the_volume_of_what_is_left(shape, space, volume, place):
+    """A plane of symmetry along the last axis but one, and along the last."""
+    for axis in (space.dim - 2, space.dim - 1):
+        lower, upper = np.full(space.dim, -1.0), np.full(space.dim, 1.0)
+        lower[axis] = place
+        part = fill(shape, space, keep=(lower, upper)).volume.sum()
+        assert part == pytest.approx(shape.volume_between(lower, upper, space), rel=1e-12)
+        upper[axis], lower[axis] = place, -1.0
+        rest = fill(shape, space, keep=(lower, upper)).volume.sum()
+        assert part + rest == pytest.approx(volume, rel=1e-9)
+
+
+def whole(space):
+    return np.full(space.dim, -1.0), np.full(space.dim, 1.0)
+
+
+TOUCHING = {
+    "on a row of lattice points": (
+        Box(kind="box", lower=[0, 0], upper=[0.305, 0.2]),
+        Box(kind="box", lower=[0.305, 0], upper=[0.5, 0.2]),
+        PLANE,
+    ),
+    "discs in a lattice point": (
+        BALL_2D,
+        Sphere(kind="sphere", centre=[0.2, 0.1], radius=0.1),
+        PLANE,
+    ),
+    "a cone under a rod": (CONE, ROD.model_copy(update={"base": [0.0, 0.0, 0.3]}), SOLID),
+    "a ball on a block": (BALL, Box(kind="box", lower=[-0.1, -0.1, -0.1], upper=[0.1, 0.1, 0.0]), SOLID),
+    "side by side, bounds within each other": (
+        Sphere(kind="sphere", centre=[0.0, 0.0], radius=0.1),
+        Sphere(kind="sphere", centre=[0.12, 0.16], radius=0.1),
+        PLANE,
+    ),
+}
+
+
+@pytest.mark.parametrize("touching", TOUCHING.values(), ids=TOUCHING)
+def test_bodies_that_touch_share_no_volume(touching):
+    first, second, space = touching
+    for a, b in ((first, second), (second, first)):
+        assert shared_volume(a, b, space, [0.01] * space.dim, whole(space)) == 0
+
+
+def test_an_overlap_thinner_than_a_particle_is_measured():
+    low, high = (Box(kind="box", lower=[0, z], upper=[0.2, end]) for z, end in ((0, 0.2), (0.196, 0.3)))
+    found = shared_volume(low, high, PLANE, [0.01, 0.01], whole(PLANE))
+    assert found == pytest.approx(0.2 * 0.004, rel=1e-12)
+    assert shared_volume(low, high, PLANE, [0.01, 0.01], ([-1, -1], [0, 1])) == 0  # outside the domain
+    disc = Cylinder(kind="cylinder", radius=0.1, height=0.1, base=[0, 0, 0.196])
+    found = shared_volume(ROD, disc, SOLID, [0.01] * 3, whole(SOLID))
+    assert found == pytest.approx(math.pi * 0.01 * 0.004, rel=0.02)
+    lens = Sphere(kind="sphere", centre=[0.0, 0.298], radius=0.1)
+    exact = 2 * math.pi * 0.001**2 * (0.3 - 0.001) / 3
+    assert shared_volume(BALL_2D, lens, RADIAL, [0.01] * 2, whole(RADIAL)) == pytest.approx(exact, rel=0.1)
 
 
 def test_a_body_between_lattice_points_gets_no_particles():

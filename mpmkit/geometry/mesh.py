@@ -36,6 +36,7 @@ class Mesh(Shape):
         "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
     )
 
+    tolerance = 1e-6  # the file may hold its corners in single precision
     files = ("file",)
 
     def content(self, field: str) -> bytes:
@@ -82,8 +83,6 @@ class Mesh(Shape):
         vertices, faces = surface.vertices - middle, np.asarray(surface.faces)
         points = points - middle
         inside = igl.fast_winding_number(vertices, faces, points) > 0.5
-        # Not the caller's 1e-9, but 1e-6: the file may hold its corners in single precision, too.
-        tolerance = _TOLERANCE * float(np.ptp(surface.bounds, axis=0).max())
         unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
         distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
         return inside | (distance <= tolerance)  # farther away the distance is nan
@@ -94,9 +93,38 @@ class Mesh(Shape):
     def _volume(self, space: Space) -> float:
         return float(self._surface().volume)
 
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        surface = self._surface()
+        part = np.asarray(surface.vertices), np.asarray(surface.faces)
+        for axis in (1, 2):
+            part = _beyond(part, axis, lower[axis], 1)
+            part = _beyond(part, axis, upper[axis], -1)
+        return _volume_beyond(part, lower[0]) - _volume_beyond(part, upper[0])
 
-_TOLERANCE = 1e-6
-"""Part of a mesh's largest extent by which a point may miss its surface and still be on it."""
+
+def _beyond(
+    surface: tuple[np.ndarray, np.ndarray], axis: int, place: float, sign: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and triangles of the part of a surface above a plane (sign 1) or below it (-1), left open."""
+    from trimesh.intersections import slice_faces_plane
+
+    vertices, faces = surface
+    if len(faces) == 0:
+        return surface
+    normal = np.eye(3)[axis]
+    return slice_faces_plane(vertices, faces, sign * normal, place * normal)[:2]
+
+
+def _volume_beyond(surface: tuple[np.ndarray, np.ndarray], x: float) -> float:
+    """∮ (X − x) n_X dA over the part of a surface with X ≥ x, m³.
+
+    By Gauss's theorem that is the volume beyond x of the solid, though the cuts are left open: the integrand
+    is zero on a cut at x and on cuts along X.
+    """
+    vertices, faces = _beyond(surface, 0, x, 1)
+    a, b, c = vertices[faces.T]
+    area = np.cross(b - a, c - a)[:, 0] / 2
+    return float(area @ ((a + b + c)[:, 0] / 3 - x))
 
 
 @lru_cache(maxsize=8)

@@ -8,7 +8,7 @@ from ..case.model import Body, Case, Material
 from ..case.sound_speed import SoundSpeedMach
 from ..contracts.law import initial_state
 from ..errors import CaseError
-from ..geometry import Sample, sample
+from ..geometry import Sample, sample, shared_volume
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
@@ -31,8 +31,8 @@ def make_particles(case: Case) -> Particles:
     bodies = [
         (number, body) for m in materials for number, body in enumerate(case.bodies) if body.material == m
     ]
+    _refuse_overlaps(case)
     samples = [_sample_body(case, number) for number, _ in bodies]
-    _refuse_overlaps(case, bodies, samples)
     counts = [len(found.volume) for found in samples]
 
     lower, _ = case.domain_bounds
@@ -97,15 +97,29 @@ def _group(case: Case, material: Material, part: slice) -> Group:
     )
 
 
-def _refuse_overlaps(case: Case, bodies: list[tuple[int, Body]], samples: list[Sample]) -> None:
-    for (number, _), found in zip(bodies, samples, strict=True):
-        for other, body in bodies:
-            inside = 0 if other >= number else int(body.shape.contains(found.position, case.space_).sum())
-            if inside:
+def _refuse_overlaps(case: Case) -> None:
+    """Refuse bodies that share room, by their shapes: what is less than a particle would be weighed twice."""
+    space, spacing = case.space_, [_spacing(case, body) for body in case.bodies]
+    for number, body in enumerate(case.bodies):
+        for other in range(number):
+            shared = shared_volume(
+                body.shape,
+                case.bodies[other].shape,
+                space,
+                np.minimum(spacing[number], spacing[other]),
+                case.domain_bounds,
+            )
+            if shared > 0:
                 raise CaseError(
-                    f"bodies.{number}.shape has {inside} of its particles inside bodies.{other}.shape; "
-                    "bodies may touch but not overlap"
+                    f"bodies.{number}.shape and bodies.{other}.shape overlap: they share {shared:.3g} m³, "
+                    f"{shared / body.shape.volume(space):.2g} of bodies.{number}; bodies may touch but not "
+                    "overlap"
                 )
+
+
+def _spacing(case: Case, body: Body) -> np.ndarray:
+    """Distance of a body's particles, m, (dim,)."""
+    return case.grid.cell_size / np.array(body.particles_along_axes(case.space_.dim), dtype=float)
 
 
 def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:
@@ -128,8 +142,10 @@ def _sample_body(case: Case, number: int) -> Sample:
         keep=bounds,
     )
     if len(found.volume) == 0:
+        spacing = " by ".join(f"{s:g}" for s in _spacing(case, body))
         raise CaseError(
-            f"bodies.{number}.shape holds no particle at a cell size of {case.grid.cell_size:g} m; "
+            f"bodies.{number}.shape holds no particle at a cell size of {case.grid.cell_size:g} m: particles "
+            f"are {spacing} m apart, and along each axis the body must be at least half as thick; "
             "it must be larger, or the cells smaller"
         )
     return found
