@@ -110,8 +110,10 @@ class Window:
         grid = self.grid
         contacts = self._contacts()
         low, high = self.touchable(lowest_cell, highest_cell)
-        size = [int(n) for n in high - low + 1]
-        size[-1] += 2  # rows of pairs are as wide as a vector: they reach beyond what a particle touches
+        # One node beyond what is touched, which gets nothing but zeros: a particle on an upper face counts to
+        # the cell beyond it, and the last of the nodes there that a shape function names has no weight.
+        size = [int(n) + 1 for n in high - low + 1]
+        size[-1] += 1  # rows of pairs are as wide as a vector, and reach one node further
         size += [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
         self.shape = (size[0], size[1], size[2])

@@ -130,7 +130,7 @@ class SceneOperations:
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
-        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.face_first, first, last, True)
+        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.plane_first, first, last, True)
 
     # --- Nodes
 
