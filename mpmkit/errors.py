@@ -37,6 +37,14 @@ class GuardStop(MpmkitError):
         self.step = step
         self.particle = particle
 
+    def __reduce__(self) -> tuple:
+        """So that it can travel from a process to another one: a pool waits for ever for one that cannot."""
+        return _guard_stop, (self.guard, str(self), self.step, self.particle)
+
+
+def _guard_stop(guard: str, message: str, step: int, particle: int | None) -> GuardStop:
+    return GuardStop(guard, message, step=step, particle=particle)
+
 
 class PluginFault(Exception):
     """A plug-in gave back what cannot be used, or wrote where it must not; ``blame`` names it.
@@ -56,6 +64,10 @@ class OutputError(MpmkitError):
     """Results could not be written: disk full, no permission, directory taken."""
 
     exit_status = 4
+
+
+class Undrawn(KeyboardInterrupt):
+    """Ctrl-C while the pictures were drawn of a run that had ended; says how to draw them."""
 
 
 class Interrupted(KeyboardInterrupt):

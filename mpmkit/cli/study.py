@@ -43,16 +43,16 @@ def run_study(
     quiet: bool,
 ) -> None:
     """Run a study into its directory and say what came of it."""
-    import signal
     from contextlib import nullcontext
 
     from ..errors import Interrupted
+    from ..running.interrupts import take_signals_as_interrupts
     from ..study import collect, execute, members_of
     from ..study.store import Store
 
     members = members_of(study)
     store = Store(Path(out) if out is not None else Path("runs") / study.name)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
+    take_signals_as_interrupts()
     # The cluster first of all: where there is none, nothing is written.
     with _cluster(scheduler) as executor, store.claimed(study):
         progress = None if quiet else _progress(study, members, store)

@@ -85,8 +85,8 @@ class History:
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take up the rows of a checkpoint."""
-        self._times = state["time"].tolist()
-        self._rows = {name: list(state[f"row.{name}"]) for name in self._rows}
+        self._times, self._next_flush = state["time"].tolist(), -np.inf
+        self._rows = {name: [np.array(row) for row in state[f"row.{name}"]] for name in self._columns}
         names = [key.partition(".")[2] for key in state if key.startswith("particles.")]
         self._particles = {
             name: np.split(state[f"particles.{name}"], np.cumsum(state[f"lengths.{name}"])[:-1])

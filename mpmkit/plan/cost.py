@@ -11,7 +11,7 @@ from ..case.model import Case
 from ..case.plugins import cautions, plugins_of
 from ..errors import CaseError, GuardStop
 from ..registry.blame import blaming_plugins
-from ..running.threads import use_threads
+from ..running.threads import possible_threads, using_threads
 from ..solver.memory import expected_bytes, require_memory
 from ..solver.simulation import Simulation
 from .cheaper import cheaper_models
@@ -49,6 +49,7 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         GuardStop: it diverges at once, or a plug-in raised an exception.
     """
     require_memory(case)
+    threads = possible_threads(threads)
     with blaming_plugins(plugins_of(case)):
         cost = _cost(Simulation(case), threads)
     return cost | {"expected_error": expected_error(case), "cheaper": _cheaper(case, cost, threads)}
@@ -75,8 +76,12 @@ def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict
 
 
 def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
+    with using_threads(threads, len(simulation.particles)):
+        return _cost_of(simulation)
+
+
+def _cost_of(simulation: Simulation) -> dict[str, Any]:
     case, particles = simulation.case, len(simulation.particles)
-    use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings, remarks = [*cautions(case), *simulation.warnings()], simulation.remarks()

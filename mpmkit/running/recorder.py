@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..case.output import FRAMES, ROWS
 from ..output import FrameWriter, History, RunDirectory, Variable
 from ..solver.measures import PARTICLE_FIELDS, frame_fields
 from ..solver.simulation import Simulation
+from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .schedule import Schedule
 
 COLUMNS = (
@@ -42,21 +41,21 @@ class Recorder:
         simulation: Simulation,
         attributes: dict[str, str],
         directory: RunDirectory | None,
-        frames: dict[str, float] | None = None,
+        goes_on: bool = False,
     ) -> None:
         """
         Args:
             simulation: what is recorded.
             attributes: global attributes of the history.
             directory: where the history and the frames are written; nothing is without one.
-            frames: of a run that goes on, the times of those that are there, by file.
+            goes_on: whether ``restore`` is called next, so that the frames that are there stay until then.
         """
         case = simulation.case
         settings, until = case.output, case.until
         self.simulation = simulation
         self.directory = directory
         self.history = History(COLUMNS, attributes, case.space_.axes)
-        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, frames)
+        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
         self._last_row = self._last_frame = -1  # steps
@@ -69,20 +68,24 @@ class Recorder:
         if self.frames is not None and self._frames_due.passed(now):
             self._add_frame()
 
-    def state(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """What has been recorded, as arrays and as words, for a checkpoint."""
-        arrays = {f"history.{name}": rows for name, rows in self.history.state().items()}
-        frames = {} if self.frames is None else dict(self.frames.frames)
-        return arrays, {"frames": frames, "last_row": self._last_row, "last_frame": self._last_frame}
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own."""
+        found: dict[str, Stateful] = {
+            "history": self.history,
+            "rows_due": self._rows_due,
+            "frames_due": self._frames_due,
+        }
+        return found if self.frames is None else found | {"frames": self.frames}
 
-    def restore(self, arrays: dict[str, np.ndarray], words: dict[str, Any]) -> None:
+    def state(self) -> State:
+        """What has been recorded, and what is due."""
+        return plain_state(self) | state_of(self.components)
+
+    def restore(self, state: State) -> None:
         """Take up what had been recorded by the present step of the simulation."""
-        rows = {key.removeprefix("history."): a for key, a in arrays.items() if key.startswith("history.")}
-        self.history.restore(rows)
-        self._last_row, self._last_frame = words["last_row"], words["last_frame"]
-        now = self.simulation.time + 0.5 * self.simulation.time_step
-        self._rows_due.passed(now)
-        self._frames_due.passed(now)
+        restore_plain(self, state)
+        restore(self.components, state)
 
     def finish(self) -> None:
         """Add the state in which the run ended, and write the history."""

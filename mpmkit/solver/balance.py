@@ -7,6 +7,7 @@ import numpy as np
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy, weighted
 from .grid import Grid
 from .particles import Particles
+from .stateful import State, plain_state, restore_plain
 
 CREATED = 0.2
 """Energy from nowhere, over the energy that the scene had to move with, that is not taken for long."""
@@ -47,6 +48,14 @@ class EnergyBalance:
         fastest = max(group.wave_speed for group in particles.groups)
         # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
         self._least = mass * (float(np.linalg.norm(gravity)) * grid.cell_size + ROUNDING * fastest**2)
+
+    def state(self) -> State:
+        """All its numbers."""
+        return plain_state(self)
+
+    def restore(self, state: State) -> None:
+        """Take its numbers back."""
+        restore_plain(self, state)
 
     def update(self, p: Particles, time: float) -> None:
         """Take the energies of the present state."""

@@ -11,6 +11,7 @@ from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
 from .balance import EnergyBalance
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import warnings
 from .view import SceneView
 
@@ -35,13 +36,31 @@ class Guards:
         self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
 
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own."""
+        return {} if self.balance is None else {"balance": self.balance}
+
+    def state(self) -> State:
+        """What the guards remember of the run: without it, a run that goes on would be forgiven."""
+        return plain_state(self, but=("balance",)) | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back what was remembered, for particles that are in their state already."""
+        self.balance = self._new_balance() if any("/" in name for name in state) else None
+        restore(self.components, state)
+        restore_plain(self, state)
+
     def begin(self) -> None:
-        """Take mass and energy of the state in which the scene begins, or goes on."""
-        s = self._scene
+        """Take mass and energy of the state in which the scene begins."""
         if self._mass is None:
-            self._mass = float(np.sum(s.particles.mass))
+            self._mass = float(np.sum(self._scene.particles.mass))
             if self.watches_energy:
-                self.balance = EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
+                self.balance = self._new_balance()
+
+    def _new_balance(self) -> EnergyBalance:
+        s = self._scene
+        return EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
 
     def check(self) -> None:
         """Raise GuardStop if a particle is unsound, if mass got lost, or if energy came from nowhere.

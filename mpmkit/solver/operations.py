@@ -19,9 +19,12 @@ from .grid import Grid, Window
 from .particles import Group, Particles
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
+FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
+"""Arrays that are made of the case, or that a step fills before it reads them; the weights are kept apart."""
 
 
 class SceneOperations:
@@ -45,7 +48,7 @@ class SceneOperations:
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
         self._begun = 0
-        self._auditing = True
+        self._rehearsing = self._auditing = True
         self.allocate()
 
     def allocate(self) -> None:
@@ -62,6 +65,24 @@ class SceneOperations:
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
+
+    # --- State
+
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own, in the order in which it is restored."""
+        return {"window": self.window, "sorting": self.sorting, "relaxation": self.relaxation}
+
+    def state(self) -> State:
+        """Its numbers, its components, and the last weights, which the guard of the mass reads."""
+        return plain_state(self, but=FILLED_ANEW) | {"weight/": self.weight} | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back a state, for particles that are in theirs already."""
+        self.allocate()
+        self.weight[...] = state["weight/"]
+        restore(self.components, state)
+        restore_plain(self, state)
 
     # --- The frame of a step
 

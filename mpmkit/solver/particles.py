@@ -8,6 +8,7 @@ import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
 from ..kernels.sort import permute
+from .stateful import State, plain_state, restore_plain
 
 
 @dataclass
@@ -88,6 +89,26 @@ class Particles:
     def arrays(self) -> dict[str, np.ndarray]:
         """Every array that has an entry a particle, by name."""
         return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+
+    def state(self) -> State:
+        """All arrays, and of each group its numbers, its part and the state of its law."""
+        found = plain_state(self)
+        for index, group in enumerate(self.groups):
+            own = plain_state(group) | {"part/": np.array([group.part.start, group.part.stop])}
+            own |= {f"law/{name}": array for name, array in group.state.items()}
+            found |= {f"group/{index}/{name}": value for name, value in own.items()}
+        return found
+
+    def restore(self, state: State) -> None:
+        """Take back a state of the same groups."""
+        restore_plain(self, state)
+        for index, group in enumerate(self.groups):
+            prefix = f"group/{index}/"
+            own = {key.removeprefix(prefix): v for key, v in state.items() if key.startswith(prefix)}
+            restore_plain(group, own)
+            start, stop = own["part/"]
+            group.part = slice(int(start), int(stop))
+            group.state = {name: own[f"law/{name}"].copy() for name in group.law.state}
 
     def take(self, index: np.ndarray) -> None:
         """Replace every array by its entries at ``index``, which must leave each group in its own part."""

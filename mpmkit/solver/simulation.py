@@ -17,6 +17,7 @@ from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
 from .splitting import OutOfMemory, split
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
@@ -54,10 +55,32 @@ class Simulation:
         self.mach_number: float
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
+        self._prepared = 0
+        """The step, by the number of those done before it, for which ``prepare`` has looked last."""
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
         self._follows_flow = any(group.mach is not None for group in self.particles.groups)
         self.guards = Guards(self)
         self.choose_time_step()
+
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own, in the order in which it is restored."""
+        return {"particles": self.particles, "operations": self.operations, "guards": self.guards}
+
+    def state(self) -> State:
+        """All that the run depends on from here on, beside the case: it goes on from it to the same bits."""
+        limits_ = np.array(list(self.limits.as_dict().values()))
+        return plain_state(self) | {"limits/": limits_} | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back a state of the same case.
+
+        Raises:
+            KeyError: the state lacks something.
+        """
+        restore_plain(self, state)
+        self.limits = Limits(*map(float, state["limits/"]))
+        restore(self.components, state)
 
     def choose_time_step(self) -> None:
         """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
@@ -87,19 +110,30 @@ class Simulation:
         """What the user should know of the step that was chosen."""
         return warnings(self.case.scheme, self.limits, self.time_step)
 
+    def prepare(self) -> None:
+        """Every few steps, look at the guards, split, and choose the step; ``advance`` begins with it.
+
+        Whoever wants to know the length of the next step beforehand calls it first: it looks once a step.
+
+        Raises:
+            GuardStop: the run is beyond saving, see ``guards``.
+        """
+        self.guards.begin()
+        if self.steps % CONTROL_INTERVAL == 0 and self.steps > self._prepared:
+            self._prepared = self.steps
+            self.check()
+            changed = self.case.scheme.splitting and self._split()
+            self.choose_time_step()
+            if changed or self._follows_flow:
+                self.guards.accept_changes()
+
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.
 
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.
         """
-        self.guards.begin()
-        if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
-            self.check()
-            changed = self.case.scheme.splitting and self._split()
-            self.choose_time_step()
-            if changed or self._follows_flow:
-                self.guards.accept_changes()
+        self.prepare()
         try:
             lost = self.operations.begin()
         except Scattered as error:
