@@ -10,6 +10,7 @@ from ..case.output import FRAMES, ROWS
 from ..output import FrameWriter, History, RunDirectory, Variable
 from ..solver.measures import PARTICLE_FIELDS, frame_fields
 from ..solver.simulation import Simulation
+from .milestones import Milestones
 from .schedule import Schedule
 
 COLUMNS = (
@@ -40,7 +41,7 @@ class Recorder:
     def __init__(
         self,
         simulation: Simulation,
-        attributes: dict[str, str],
+        attributes: dict[str, Any],
         directory: RunDirectory | None,
         frames: dict[str, float] | None = None,
     ) -> None:
@@ -59,10 +60,12 @@ class Recorder:
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, frames)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
+        self.milestones = Milestones(simulation)
         self._last_row = self._last_frame = -1  # steps
 
     def record(self) -> None:
-        """Add a row, and a frame, where one is due."""
+        """Add a row, and a frame, where one is due, and look for milestones."""
+        self.milestones.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
             self._add_row()
@@ -72,23 +75,18 @@ class Recorder:
     def state(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """What has been recorded, as arrays and as words, for a checkpoint."""
         arrays = {f"history.{name}": rows for name, rows in self.history.state().items()}
+        arrays |= {f"milestones.{name}": value for name, value in self.milestones.state().items()}
         frames = {} if self.frames is None else dict(self.frames.frames)
         return arrays, {"frames": frames, "last_row": self._last_row, "last_frame": self._last_frame}
 
     def restore(self, arrays: dict[str, np.ndarray], words: dict[str, Any]) -> None:
         """Take up what had been recorded by the present step of the simulation."""
-        rows = {key.removeprefix("history."): a for key, a in arrays.items() if key.startswith("history.")}
-        self.history.restore(rows)
+        self.history.restore(_part(arrays, "history."))
+        self.milestones.restore(_part(arrays, "milestones."))
         self._last_row, self._last_frame = words["last_row"], words["last_frame"]
         now = self.simulation.time + 0.5 * self.simulation.time_step
         self._rows_due.passed(now)
         self._frames_due.passed(now)
-
-    def finish(self) -> None:
-        """Add the state in which the run ended, and write the history."""
-        self.add_last_row()
-        self.add_last_frame()
-        self.write()
 
     def add_last_row(self) -> None:
         """Add a row of the present step, unless there is one."""
@@ -127,3 +125,8 @@ class Recorder:
         position = particles.position + simulation.grid.lower
         self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
         self._last_frame = simulation.steps
+
+
+def _part(arrays: dict[str, np.ndarray], prefix: str) -> dict[str, np.ndarray]:
+    """The arrays whose names begin with a prefix, by the rest of their names."""
+    return {name.removeprefix(prefix): a for name, a in arrays.items() if name.startswith(prefix)}

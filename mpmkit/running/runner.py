@@ -12,13 +12,14 @@ from ..case.plugins import plugins_of
 from ..errors import CaseError, GuardStop, OutputError, reason
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
+from ..output.log import RECORD
 from ..registry.blame import blaming_plugins
 from ..solver.memory import require_memory
 from ..solver.simulation import Simulation
 from ..solver.state import restore
 from .case_files import from_copies, named_files, portable
 from .execution import Listener, Progress, execute
-from .provenance import attributes
+from .provenance import attributes, log_lines
 from .recorder import Recorder
 from .resume import case_of, identity, last_checkpoint, other_case
 from .saver import Saver
@@ -55,7 +56,8 @@ def run(
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
-        the fields named in ``output.particle_history``.
+        the fields named in ``output.particle_history``. Its attributes hold the numbers of the summary, such
+        as ``t500``, s, and ``final_spread``, m; what never happened is not a number there.
 
     Raises:
         CaseError: the case cannot be run as it stands.
@@ -142,6 +144,8 @@ def _execute(
     recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
 ) -> None:
     """Run to the end in a directory, and draw the pictures of it even if a guard stopped it."""
+    for line in log_lines(recorder.simulation.case, threads):
+        RECORD.info("%s", line)
     try:
         execute(recorder, watch, threads, listen, saver)
     except GuardStop:
@@ -156,8 +160,10 @@ def _report(recorder: Recorder) -> None:
     if not case.output.report or directory is None:
         return
     try:
+        LOGGER.info("drawing the report")  # it takes a few seconds
         from ..report import write_report
 
-        write_report(directory.path)
+        for picture in write_report(directory.path):
+            LOGGER.info("picture: %s", picture)
     except Exception as error:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
