@@ -5,7 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class History:
         axes: names of the axes of the space, such as ``("r", "z")``.
     """
 
-    def __init__(self, columns: Sequence[Variable], attributes: dict[str, str], axes: Sequence[str]) -> None:
+    def __init__(self, columns: Sequence[Variable], attributes: dict[str, Any], axes: Sequence[str]) -> None:
         self.attributes = attributes
         self._columns = {column.name: column for column in columns}
         self._axes = tuple(axes)

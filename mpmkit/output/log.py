@@ -10,6 +10,8 @@ from types import TracebackType
 from .atomic import cannot_write
 
 LOGGER = logging.getLogger("mpmkit")
+RECORD = logging.getLogger("mpmkit.record")
+"""For what belongs into ``run.log`` alone: a display leaves it out."""
 
 
 class RunLog(logging.FileHandler):

@@ -15,6 +15,7 @@ from .conclusion import conclude, salvage
 from .interrupts import held_interrupts
 from .recorder import Recorder
 from .saver import Saver
+from .setting import setting
 from .stopwatch import Stopwatch
 
 LOGGER = logging.getLogger("mpmkit")
@@ -106,7 +107,7 @@ def _announce(simulation: Simulation, threads: int) -> None:
     )  # fmt: skip
     if simulation.steps > 0:
         LOGGER.info("goes on after step %d, t = %.6g s", simulation.steps, simulation.time)
-    for sentence in simulation.remarks():
+    for sentence in [*setting(simulation.case), *simulation.remarks()]:
         LOGGER.info("%s", sentence)
     for sentence in [*cautions(simulation.case), *simulation.warnings()]:
         LOGGER.warning("%s", sentence)

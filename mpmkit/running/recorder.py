@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..case.output import FRAMES, ROWS
@@ -9,6 +11,7 @@ from ..output import FrameWriter, History, RunDirectory, Variable
 from ..solver.measures import PARTICLE_FIELDS, frame_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .milestones import Milestones
 from .schedule import Schedule
 
 COLUMNS = (
@@ -39,7 +42,7 @@ class Recorder:
     def __init__(
         self,
         simulation: Simulation,
-        attributes: dict[str, str],
+        attributes: dict[str, Any],
         directory: RunDirectory | None,
         goes_on: bool = False,
     ) -> None:
@@ -58,10 +61,12 @@ class Recorder:
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
+        self.milestones = Milestones(simulation)
         self._last_row = self._last_frame = -1  # steps
 
     def record(self) -> None:
-        """Add a row, and a frame, where one is due."""
+        """Add a row, and a frame, where one is due, and look for milestones."""
+        self.milestones.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
             self._add_row()
@@ -73,6 +78,7 @@ class Recorder:
         """What has a state of its own."""
         found: dict[str, Stateful] = {
             "history": self.history,
+            "milestones": self.milestones,
             "rows_due": self._rows_due,
             "frames_due": self._frames_due,
         }
@@ -86,12 +92,6 @@ class Recorder:
         """Take up what had been recorded by the present step of the simulation."""
         restore_plain(self, state)
         restore(self.components, state)
-
-    def finish(self) -> None:
-        """Add the state in which the run ended, and write the history."""
-        self.add_last_row()
-        self.add_last_frame()
-        self.write()
 
     def add_last_row(self) -> None:
         """Add a row of the present step, unless there is one."""

@@ -12,13 +12,14 @@ from ..case.plugins import plugins_of
 from ..errors import CaseError, GuardStop, OutputError, Undrawn, reason
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
+from ..output.log import RECORD
 from ..registry.blame import blaming_plugins
 from ..solver.memory import require_memory
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, restore
 from .case_files import NamedFile, from_copies, named_files, portable
 from .execution import Listener, Progress, execute
-from .provenance import attributes
+from .provenance import attributes, log_lines
 from .recorder import Recorder
 from .resume import case_of, for_longer, identity, last_checkpoint, other_case
 from .saver import Saver, run_components
@@ -55,7 +56,8 @@ def run(
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
-        the fields named in ``output.particle_history``.
+        the fields named in ``output.particle_history``. Its attributes hold the numbers of the summary, such
+        as ``t500``, s, and ``final_spread``, m; what never happened is not a number there.
 
     Raises:
         CaseError: the case cannot be run as it stands.
@@ -176,6 +178,8 @@ def _execute(
     Raises:
         Undrawn: the run has finished, and was interrupted at its pictures.
     """
+    for line in log_lines(recorder.simulation.case, threads):
+        RECORD.info("%s", line)
     try:
         hurry = execute(recorder, watch, threads, listen, saver)
     except GuardStop:
@@ -195,9 +199,11 @@ def _report(recorder: Recorder, hurry: bool = False) -> None:
     try:
         if hurry:
             raise KeyboardInterrupt
+        LOGGER.info("drawing the report")  # it takes a few seconds
         from ..report import write_report
 
-        write_report(directory.path)
+        for picture in write_report(directory.path):
+            LOGGER.info("picture: %s", picture)
     except KeyboardInterrupt:
         raise Undrawn(
             f"the run has ended and its results are in '{directory.path}', but it was told to stop before "

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.model import Case
+from ..kernels.extents import extents
 from ..kernels.tensors import shear_rate
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from .grid import Grid
@@ -45,7 +46,7 @@ class Measures:
         # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
         return {
-            "spread_diameter": self._spread(p, inside),
+            "spread_diameter": self.spread(p),
             "height": height,
             "axis_height": axis_height,
             "slump": self.initial_height - axis_height,
@@ -60,15 +61,14 @@ class Measures:
             "fractured_fraction": self.fractured(p),
         }
 
-    def _spread(self, p: Particles, of: np.ndarray) -> float:
+    def spread(self, p: Particles) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
-        diameters = []
-        for a in range(self.grid.dim - 1):
-            if self.grid.periodic[a] or not of.any():
+        grid, diameters = self.grid, []
+        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, grid.periodic)
+        for a, (low, high) in enumerate(ends.tolist()):
+            if grid.periodic[a] or low > high:
                 continue
-            high = float((p.position[:, a] + p.box[:, a])[of].max())
-            low = float((p.position[:, a] - p.box[:, a])[of].min())
-            plane = _symmetry_plane(self.case, self.grid, a)
+            plane = _symmetry_plane(self.case, grid, a)
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
 
