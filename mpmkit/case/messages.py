@@ -102,12 +102,13 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry,
         allowed = one_of(choices)
     else:
         allowed = one_of(choices) if choices and isinstance(value, str) else place.describe()
-    near, written_out = nearest(value, choices), place.written_out(value) if isinstance(value, str) else None
+    near, why_not = _plugin_meant(path, value, choices, registry)
+    written_out = place.written_out(value) if isinstance(value, str) else None
     hint = f"; did you mean {json.dumps(near)}?" if near is not None and not missing else ""
     if written_out is not None and not missing:
         hint = f"; did you mean {written_out}?"
     state = "is missing" if missing else f"is {shown(value)}"
-    return f"{_field(path)} {state}; it must be {allowed}{hint}{_unusable(path, value, registry)}"
+    return f"{_field(path)} {state}; it must be {allowed}{hint}{why_not}"
 
 
 def _field(path: Path) -> str:
@@ -120,17 +121,22 @@ def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
     return f"{_field(path[:-1]) or f'the {what}'} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
 
 
-def _unusable(path: Path, name: Any, registry: Registry) -> str:
-    """Of the plug-ins that were not loaded, those that may have been meant, or else all of them."""
+def _plugin_meant(path: Path, name: Any, choices: list[Any], registry: Registry) -> tuple[str | None, str]:
+    """What a misspelt name may have meant, and why the plug-in that was meant is missing.
+
+    Of the plug-ins that were not loaded, those that may have been meant are told of, or else all of them.
+    """
     kinds = [
         key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
     ]
     if not kinds or not registry.problems:
-        return ""
-    meant = [
-        problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)
-    ]
-    if meant:
-        return "".join(f"; {problem}" for problem in meant)
+        return nearest(name, choices), ""
+    kind = str(kinds[0])
+    reasons, near = registry.why_not(kind, name) if isinstance(name, str) else [], None
+    if not reasons:
+        near = nearest(name, [*choices, *registry.unusable(kind)])
+        reasons = registry.why_not(kind, near) if near is not None and near not in choices else []
+    if reasons:
+        return near, "".join(f"; {reason}" for reason in reasons)
     names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)
-    return f"; plug-ins that were not loaded are {names}, see mpmkit plugins"
+    return near, f"; plug-ins that were not loaded are {names}, see mpmkit plugins"

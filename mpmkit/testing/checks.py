@@ -110,7 +110,7 @@ def order_checks(order: UpdateOrder) -> list[Check]:
 
 def _in_place_first(
     in_place: Callable[[Any], None], checks: Iterable[Callable[[Any], None]], subject: Any
-) -> list[tuple[str, Callable[[], None]]]:
+) -> list[tuple[str, Callable[[], Any]]]:
     """Each check after the one that sees whether anything is written: its sentence names the cause."""
 
     def run(check: Callable[[Any], None]) -> None:
@@ -118,8 +118,9 @@ def _in_place_first(
         in_place(subject)
         check(subject)
 
-    return [("writes_in_place", partial(in_place, subject))] + [
-        (check.__name__, partial(run, check)) for check in checks
+    return [
+        ("writes_in_place", partial(in_place, subject)),
+        *((check.__name__, partial(run, check)) for check in checks),
     ]
 
 
