@@ -179,7 +179,7 @@ def test_a_bad_plugin_leaves_the_good_ones_of_its_module(distribution):
     assert [p.distribution for p in registry.problems] == ["half-pack"]
 
 
-@pytest.mark.parametrize("name", ["bingham", "slurry"])
+@pytest.mark.parametrize("name", ["bingham", "bingham-evp", "slurry"])
 def test_two_of_one_name_are_both_refused(name, distribution):
     rivals = {"one-pack", "two-pack"} if name == "slurry" else {"one-pack", "mpmkit"}
     for rival in rivals - {"mpmkit"}:
@@ -190,8 +190,37 @@ def test_two_of_one_name_are_both_refused(name, distribution):
     with pytest.raises(CaseError, match=f'law is "{name}"; it must be') as refused:
         parse_case(case(name), registry=registry)
     for rival in rivals:
-        assert f"of '{rival}'" in str(refused.value)
+        assert str(refused.value).count(f"of '{rival}'") == 1
+    assert f"law '{name}' is registered by" in str(refused.value)
+    assert "did you mean" not in str(refused.value)
     parse_case(case("newtonian", bodies=_newtonian()), registry=registry)
+
+
+def test_a_misspelt_name_that_two_plugins_have(distribution):
+    """That name was meant, and the clash is the reason; not another name that is near."""
+    distribution("one-pack", wet=LAW.replace('"slurry"', '"bingham-evp"'))
+    with pytest.raises(CaseError) as refused:
+        parse_case(case("bingham-evpp"), registry=discover())
+    assert "did you mean \"bingham-evp\"?; law 'bingham-evp' is registered by" in str(refused.value)
+    assert "uninstall all but one of them" in str(refused.value)
+
+
+def test_a_problem_of_another_kind_is_not_the_reason(distribution):
+    distribution(
+        "one-pack", usf=LAW.replace("api_version = 2", "api_version = 9").replace("slurry", "usf-ish")
+    )
+    with pytest.raises(CaseError, match="plug-ins that were not loaded are") as refused:
+        parse_case(case("bingham", scheme={"order": "usf-ish"}), registry=discover())
+    assert 'did you mean "usf"?' in str(refused.value)
+
+
+def test_a_name_that_clashes_is_taken(distribution, tmp_path, capsys):
+    distribution("one-pack", wet=LAW.replace('"slurry"', '"bingham-evp"'))
+    assert status("new-plugin", "bingham-evp", "--kind", "law", "--out", tmp_path / "new") == 2
+    assert "there is a constitutive law 'bingham-evp' already: law 'bingham-evp' is registered by" in (
+        capsys.readouterr().err
+    )
+    assert not (tmp_path / "new").exists()
 
 
 def test_a_kind_without_any_usable_plugin_is_told_of(distribution):

@@ -111,9 +111,10 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry,
         allowed = one_of(choices)
     else:
         allowed = one_of(choices) if choices and isinstance(value, str) else place.describe()
-    hint = "" if missing else _hint(value, place, choices)
+    unusable, why_not = _unusable(path, value, choices, registry)
+    hint = "" if missing or value in unusable else _hint(value, place, [*choices, *unusable])
     state = "is missing" if missing else f"is {shown(value)}"
-    return f"{_field(path)} {state}; it must be {allowed}{hint}{_unusable(path, value, registry)}"
+    return f"{_field(path)} {state}; it must be {allowed}{hint}{why_not}"
 
 
 def _hint(value: Any, place: Place, choices: list[Any]) -> str:
@@ -147,17 +148,28 @@ def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
     return f"{_field(path[:-1]) or f'the {what}'} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
 
 
-def _unusable(path: Path, name: Any, registry: Registry) -> str:
-    """Of the plug-ins that were not loaded, those that may have been meant, or else all of them."""
+def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> tuple[list[str], str]:
+    """Names of plug-ins that may have been meant but cannot be used, and why the one that was meant cannot.
+
+    Of the plug-ins that were not loaded, those that may have been meant are named, or else all of them.
+    """
     kinds = [
         key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
     ]
     if not kinds or not registry.problems:
-        return ""
-    meant = [
-        problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)
-    ]
-    if meant:
-        return "".join(f"; {problem}" for problem in meant)
+        return [], ""
+    kind, reasons = str(kinds[0]), []
+    unusable = registry.unusable(kind)
+    if isinstance(name, str):
+        if own := registry.why_not(kind, name):
+            return [name], _each(own)
+        near = next(iter(meant(name, [*choices, *unusable])), None)
+        reasons = registry.why_not(kind, near) if near in unusable else []
+    if reasons:
+        return unusable, _each(reasons)
     names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)
-    return f"; plug-ins that were not loaded are {names}, see mpmkit plugins"
+    return unusable, f"; plug-ins that were not loaded are {names}, see mpmkit plugins"
+
+
+def _each(reasons: list[str]) -> str:
+    return "".join(f"; {reason}" for reason in reasons)

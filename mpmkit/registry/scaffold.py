@@ -71,6 +71,9 @@ def _refuse_taken(kind: str, plugin: str, module: str) -> None:
         raise CaseError(
             f"there is a {KINDS[kind]} '{plugin}' already, of {taken.distribution}; choose another name"
         )
+    if plugin in installed().unusable(kind):
+        reasons = "; ".join(installed().why_not(kind, plugin))
+        raise CaseError(f"there is a {KINDS[kind]} '{plugin}' already: {reasons}; choose another name")
     if importlib.util.find_spec(module) is not None:
         raise CaseError(
             f"there is a module {module} already in this environment; choose another name than '{plugin}'"

@@ -85,13 +85,13 @@ def law_checks(
         chosen = (laws.flow_curve, *chosen)
     if subject.hyperelastic:
         chosen += ON_HYPERELASTIC_LAWS
-    return _of("law", law, [(check.__name__, partial(check, subject)) for check in chosen])
+    return _of("law", law, _in_place_first(law_promises.writes_in_place, chosen, subject))
 
 
 def shape_checks(shape: ShapeFunction) -> list[Check]:
     """What every shape function must be."""
     chosen = (*ON_SHAPES, shapes.barely_touched_nodes) if shape.smooth else ON_SHAPES
-    return _of("shape", shape, [(check.__name__, partial(check, shape)) for check in chosen])
+    return _of("shape", shape, _in_place_first(shapes.writes_in_place, chosen, shape))
 
 
 def order_checks(order: UpdateOrder) -> list[Check]:
@@ -106,6 +106,22 @@ def order_checks(order: UpdateOrder) -> list[Check]:
             for space in SPACES
         ],
     )
+
+
+def _in_place_first(
+    in_place: Callable[[Any], None], checks: Iterable[Callable[[Any], None]], subject: Any
+) -> list[tuple[str, Callable[[], Any]]]:
+    """Each check after the one that sees whether anything is written: its sentence names the cause."""
+
+    def run(check: Callable[[Any], None]) -> None:
+        __tracebackhide__ = True
+        in_place(subject)
+        check(subject)
+
+    return [
+        ("writes_in_place", partial(in_place, subject)),
+        *((check.__name__, partial(run, check)) for check in checks),
+    ]
 
 
 def _of(kind: str, plugin: Plugin, runs: Iterable[tuple[str, Callable[[], None]]]) -> list[Check]:

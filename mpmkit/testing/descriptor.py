@@ -29,8 +29,7 @@ def registered(kind: str, plugin: Plugin) -> None:
     registry = installed()
     entry = registry.plugins[kind].get(plugin.name)
     if entry is None:
-        reasons = [str(problem) for problem in registry.problems if problem.concerns(kind, plugin.name)]
-        why = "; ".join(reasons) or (
+        why = "; ".join(registry.why_not(kind, plugin.name)) or (
             "no entry point of the group 'mpmkit' leads to it; install its distribution, again if its entry "
             "points have changed"
         )

@@ -9,6 +9,30 @@ from .specimens import plane, random_gradients, simple_shear
 from .violation import Violation, require, require_all, require_same
 
 
+def writes_in_place(subject: LawSubject) -> None:
+    """The law writes into the arrays that it is given. Without that, nothing else of it can be seen."""
+    specimens, L = subject.specimens(4), random_gradients(4)
+    specimens.voigt[:] = np.linspace(1.0, 2.0, 24).reshape(4, 6)
+    stress, state = specimens.voigt.copy(), dict(specimens.state)
+    returned = subject.law.update_stress(specimens.kinematics(L), specimens.state, 1e-3, specimens.voigt)
+    require(
+        returned is None,
+        f"its update_stress returned a {type(returned).__name__}; it must write into the array 'stress', "
+        "as stress[:] = … does, and return nothing",
+    )
+    for name, array in state.items():
+        require(
+            specimens.state.get(name) is array,
+            f"its update_stress replaced the array of its state '{name}'; it must write into the one there, "
+            f"as state['{name}'][:] = … does",
+        )
+    require(
+        not np.array_equal(specimens.voigt, stress),
+        "its update_stress left the array 'stress' as it was; it must write into it, as stress[:] = … does "
+        "(stress = … only makes another array of that name)",
+    )
+
+
 def declared_state(subject: LawSubject) -> None:
     """All that a law remembers is its stress and its declared state, which the framework sorts and saves.
 

@@ -182,3 +182,20 @@ class FlowCurveOff(Sound, GeneralisedNewtonianLaw):
 
     def apparent_viscosity(self, shear_rate):
         return -10.0 * np.expm1(-1e3 * shear_rate) / shear_rate + 5.0
+
+
+class NewStress(Oil):
+    """Gives the name of its stress to another array."""
+
+    def update_stress(self, kinematics, state, dt, stress):
+        stress = self.stress_of(kinematics.velocity_gradient)  # noqa: F841
+
+
+class ReturnsItsStress(Oil):
+    def update_stress(self, kinematics, state, dt, stress):
+        return self.stress_of(kinematics.velocity_gradient)
+
+
+class ReplacesItsState(Ageing):
+    def remember(self, state, strain):
+        state["strain"] = state["strain"] + strain

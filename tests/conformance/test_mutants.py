@@ -44,6 +44,11 @@ LAW_MUTANTS = [
     (law_mutants.HalfTheEnergy, "energy gives the stress"),
     (law_mutants.RemarkOfNobody, "remarks"),
     (law_mutants.NoCitation, "descriptor"),
+    (law_mutants.NewStress, "writes in place"),
+    (law_mutants.NewStress, "resists shear"),
+    (law_mutants.ReturnsItsStress, "writes in place"),
+    (law_mutants.ReplacesItsState, "writes in place"),
+    (law_mutants.ReplacesItsState, "declared state"),
     (Oil, "registered"),
 ]
 
@@ -97,6 +102,9 @@ SHAPE_MUTANTS = [
     (shape_mutants.WeightByDifference, "barely touched nodes"),
     (shape_mutants.Lopsided, "mirror"),
     (shape_mutants.UnknownDomain, "nodes within reach"),
+    (shape_mutants.NewBase, "writes in place"),
+    (shape_mutants.NewHoop, "writes in place"),
+    (shape_mutants.NewHoop, "radial expansion"),
 ]
 
 
@@ -155,6 +163,42 @@ def test_the_sentence_says_what_where_and_by_how_much():
     assert str(caught.value) == (
         "law 'mutant': steady shear stress at 5 /s is 50 Pa, not 25: off by 25, 2.5e-05 allowed"
     )
+
+
+@pytest.mark.parametrize(
+    ("checks", "name", "sentence"),
+    [
+        (
+            lambda: checks_on(law_mutants.NewStress()),
+            "resists shear",
+            "law 'mutant': its update_stress left the array 'stress' as it was; it must write into it, as "
+            "stress[:] = … does (stress = … only makes another array of that name)",
+        ),
+        (
+            lambda: checks_on(law_mutants.ReturnsItsStress()),
+            "flow curve",
+            "law 'mutant': its update_stress returned a ndarray; it must write into the array 'stress', as "
+            "stress[:] = … does, and return nothing",
+        ),
+        (
+            lambda: checks_on(law_mutants.ReplacesItsState()),
+            "declared state",
+            "law 'mutant': its update_stress replaced the array of its state 'strain'; it must write into "
+            "the one there, as state['strain'][:] = … does",
+        ),
+        (
+            lambda: {check.name: check for check in shape_checks(shape_mutants.NewHoop())},
+            "radial expansion",
+            "shape 'mutant': its fill_radial left the array 'hoop' as it was; it must write into it, as "
+            "hoop[:] = … does (hoop = … only makes another array of that name)",
+        ),
+    ],
+)
+def test_what_is_not_written_is_called_by_name(checks, name, sentence):
+    """Whatever the check: not by what follows from it, such as a stress of 0 Pa."""
+    with pytest.raises(Violation) as caught:
+        checks()[name]()
+    assert str(caught.value) == sentence
 
 
 def test_each_property_is_a_test_of_its_own():
