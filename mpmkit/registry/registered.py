@@ -69,6 +69,10 @@ class Registry:
                 reason = f"{one.kind} '{one.name}' is registered by {origins}; uninstall all but one of them"
                 self.problems.append(Problem(one.distribution, one.entry_point, reason, one.kind, one.name))
 
+    def all(self) -> list[tuple[str, type[Plugin]]]:
+        """Kind and class of every usable plug-in."""
+        return [(kind, one.plugin) for kind, found in self.plugins.items() for one in found.values()]
+
     def of_kind(self, kind: str) -> dict[str, type[Plugin]]:
         """Names and classes of one kind, in alphabetical order."""
         return {name: found.plugin for name, found in sorted(self.plugins[kind].items())}

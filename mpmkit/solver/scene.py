@@ -8,6 +8,7 @@ from ..case.model import Body, Case, Material
 from ..case.sound_speed import SoundSpeedMach
 from ..errors import CaseError
 from ..geometry import Sample, sample
+from ..registry import audit
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
@@ -39,7 +40,7 @@ def make_particles(case: Case) -> Particles:
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
     n = len(position)
-    rule = case.scheme.shape.particle_domain
+    rule = audit.particle_domain(case.scheme.shape)
     affine = case.space_.dim if case.scheme.velocity.affine else 0
     particles = Particles(
         number=np.arange(n, dtype=np.int64),
@@ -93,8 +94,7 @@ def _group(case: Case, material: Material, part: slice) -> Group:
         mach=material.sound_speed.mach if isinstance(material.sound_speed, SoundSpeedMach) else None,
         part=part,
         state={
-            name: np.full((count, *variable.shape), variable.initial, dtype=float)
-            for name, variable in law.state.items()
+            name: np.full((count, *value.shape), value) for name, value in audit.first_values(law).items()
         },
     )
 
