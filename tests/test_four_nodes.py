@@ -18,7 +18,7 @@ class CubicSplines(ShapeFunction):
     """Cubic B-splines of width 4 cells, weight 4/6 at the particle's own node."""
 
     name = "cubic-splines"
-    api_version = 1
+    api_version = 2
     citation = "a test"
     support = 4
 

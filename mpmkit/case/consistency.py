@@ -10,6 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..errors import PluginFault
+from ..registry.audit import require_number
+from ..registry.blame import blaming_plugins
 from .allowed import shown
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
@@ -26,7 +29,10 @@ MOST_OUTPUTS = 100_000
 
 
 def check(case: Case) -> None:
-    """Raise ValueError with one sentence for the first rule that is broken."""
+    """Raise ValueError with one sentence for the first rule that is broken.
+
+    Pydantic takes every ValueError for the user's: what a plug-in raises must not reach it as one.
+    """
     _check_vector("gravity", case.gravity, case)
     if case.space_.radial and case.gravity_vector[0] != 0:
         raise ValueError(f"gravity is {case.gravity}; along r it must be 0 in an axisymmetric scene")
@@ -172,10 +178,15 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
     """Parameters that are numbers each may make a wave that is none, and a step of zero."""
-    try:
-        speed = material.constitutive_law.wave_speed(material.density, case.sound_speed(material))
-    except OverflowError:
-        speed = math.inf
+    law, sound_speed = material.constitutive_law, case.sound_speed(material)
+    with blaming_plugins([("law", law)]):
+        try:
+            given = law.wave_speed(material.density, sound_speed)
+        except OverflowError:
+            given = math.inf
+        speed = require_number(law, "wave_speed", given)
+        if math.isnan(speed) or speed < 0:
+            raise PluginFault(law, f"has a wave speed of {speed} m/s; it must be positive")
     if not 0 < speed < MOST_SPEED:
         raise ValueError(
             f"{field} makes waves of {speed:.3g} m/s; its moduli and its density must give less than "
@@ -187,7 +198,10 @@ def _check_time_step(case: Case) -> None:
     """Something must limit the step: the waves of the materials, or else their viscosity."""
     ignored = case.scheme.time_step.ignore
     laws = [body.material.constitutive_law for body in case.bodies]
-    viscous = any(law.largest_viscosity(1.0) > 0 for law in laws)
+    with blaming_plugins([("law", law) for law in laws]):
+        viscous = any(
+            require_number(law, "largest_viscosity", law.largest_viscosity(1.0)) > 0 for law in laws
+        )
     if "acoustic" in ignored and ("viscous" in ignored or not viscous):
         raise ValueError(
             f"scheme.time_step.ignore is {shown(ignored)}, which leaves nothing to limit the step of a scene "

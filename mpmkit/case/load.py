@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from ..errors import CaseError
 from ..geometry import FILES
 from ..registry import Registry, installed
+from ..registry.blame import blaming_plugins
 from .allowed import shown
 from .composed import case_model
 from .json_mistakes import mistake
@@ -34,6 +35,7 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
 
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
+        PluginStop: a plug-in that the case uses fails while it is validated.
     """
     return parse_case(read_case(path), overrides, registry, source=str(path))
 
@@ -53,7 +55,9 @@ def parse_case(
         require_finite(data)  # of Python's, that is: a file has been through this
         data = apply_overrides(data, overrides)
         data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
-        return model.model_validate_json(json.dumps(data, allow_nan=False))
+        text = json.dumps(data, allow_nan=False)
+        with blaming_plugins(registry.all()):
+            return model.model_validate_json(text)
     except ValidationError as error:
         raise CaseError(f"{source}: {explain(error, data, model, registry)}") from None
     except RecursionError:

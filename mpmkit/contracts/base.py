@@ -29,7 +29,7 @@ def one_each(values: Any, asked: np.ndarray, method: str) -> np.ndarray:
     """What a method returned for an array, if it is an array of the same shape.
 
     Raises:
-        TypeError: it is not; a compiled loop would read beyond its end.
+        TypeError: it is not, or not of real numbers; a compiled loop would read beyond its end.
     """
     if not isinstance(values, np.ndarray) or values.shape != asked.shape:
         what = (
@@ -38,6 +38,8 @@ def one_each(values: Any, asked: np.ndarray, method: str) -> np.ndarray:
             else f"a {type(values).__name__}"
         )
         raise TypeError(f"{method} returned {what}; it must return an array of shape {asked.shape}")
+    if values.dtype.kind not in "fiu":
+        raise TypeError(f"{method} returned an array of {values.dtype}; it must return one of float64")
     return values
 
 

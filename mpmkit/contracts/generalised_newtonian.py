@@ -40,6 +40,10 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
     def apparent_viscosity(self, shear_rate: np.ndarray) -> np.ndarray:
         """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
 
+    def viscosity_at(self, shear_rate: float) -> float:
+        """Viscosity, Pa s, at one shear rate, 1/s, of at least ``REST_SHEAR_RATE``."""
+        return float(np.ravel(self.apparent_viscosity(np.array([shear_rate])))[0])
+
     def update_stress(
         self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
@@ -66,7 +70,7 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         if self.form == "explicit":
             return []
         modulus = maxwell.shear_modulus(None, density, sound_speed)
-        at_rest = float(np.ravel(self.apparent_viscosity(np.array([REST_SHEAR_RATE])))[0])
+        at_rest = self.viscosity_at(REST_SHEAR_RATE)
         return [
             f"law '{self.name}', relaxed, follows a change of stress within mu/G, at rest "
             f"{at_rest / modulus:.3g} s, G = {modulus:.4g} Pa"

@@ -42,7 +42,11 @@ class StateVariable:
         Raises:
             ValueError: there is no such value; the text says what is there and what is allowed.
         """
+        if not isinstance(self.shape, tuple):
+            raise ValueError(f"has the shape {self.shape!r}; it must be a tuple of whole numbers")
         named = isinstance(self.initial, str)
+        if named and not hasattr(law, self.initial):
+            raise ValueError(f"starts from '{self.initial}', which is no parameter of the law")
         value = getattr(law, self.initial) if named else self.initial
         try:
             array = np.broadcast_to(np.asarray(value, dtype=float), self.shape)
@@ -85,6 +89,8 @@ def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:
     """
     state = {}
     for name, variable in law.state.items():
+        if not isinstance(variable, StateVariable):
+            raise PluginFault(law, f"has a state '{name}' that is {variable!r}; it must be a StateVariable")
         try:
             start = variable.at_start(law)
         except ValueError as error:

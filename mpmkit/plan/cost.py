@@ -8,9 +8,8 @@ from statistics import median
 from typing import Any
 
 from ..case.model import Case
-from ..case.plugins import cautions, plugins_of
-from ..errors import CaseError, GuardStop
-from ..registry.blame import blaming_plugins
+from ..case.plugins import cautions
+from ..errors import CaseError, GuardStop, PluginStop
 from ..running.threads import possible_threads, using_threads
 from ..solver.memory import expected_bytes, require_memory
 from ..solver.simulation import Simulation
@@ -50,8 +49,7 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     """
     require_memory(case)
     threads = possible_threads(threads)
-    with blaming_plugins(plugins_of(case)):
-        cost = _cost(Simulation(case), threads)
+    cost = _cost(Simulation(case), threads)
     return cost | {"expected_error": expected_error(case), "cheaper": _cheaper(case, cost, threads)}
 
 
@@ -62,8 +60,7 @@ def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict
     lines = []
     for model in cheaper_models(case):
         try:
-            with blaming_plugins(plugins_of(model.case)):
-                found = _cost(Simulation(model.case), threads)
+            found = _cost(Simulation(model.case), threads)
         except (CaseError, GuardStop):  # it cannot be run after all, and is no advice
             continue
         if found["expected_seconds"] < WORTH_A_LINE * cost["expected_seconds"]:
@@ -146,7 +143,7 @@ def _trial(simulation: Simulation) -> tuple[float, list[str]]:
             simulation.advance()
             taken.append(clock.perf_counter() - start)
     except GuardStop as stop:
-        if not taken:
+        if not taken or isinstance(stop, PluginStop):
             raise
         return median(taken), [f"this run will be {stop}"]
     return median(taken), []

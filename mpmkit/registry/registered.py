@@ -84,6 +84,10 @@ class Registry:
             return [clash]
         return [str(problem) for problem in self.problems if problem.concerns(kind, name)]
 
+    def all(self) -> list[tuple[str, type[Plugin]]]:
+        """Kind and class of every usable plug-in."""
+        return [(kind, one.plugin) for kind, found in self.plugins.items() for one in found.values()]
+
     def of_kind(self, kind: str) -> dict[str, type[Plugin]]:
         """Names and classes of one kind, in alphabetical order."""
         return {name: found.plugin for name, found in sorted(self.plugins[kind].items())}

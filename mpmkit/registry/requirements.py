@@ -36,7 +36,7 @@ def check(plugin: type[Plugin], kind: str) -> None:
         )
     if issubclass(plugin, ShapeFunction):
         support = getattr(plugin, "support", None)
-        if support not in range(2, MOST_NODES + 1):
+        if not isinstance(support, int) or support not in range(2, MOST_NODES + 1):
             raise ValueError(f"its support is {support}; it must be 2 to {MOST_NODES} nodes along an axis")
     if inspect.isabstract(plugin):
         missing = ", ".join(sorted(plugin.__abstractmethods__))

@@ -10,6 +10,7 @@ from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
+from ..registry.audit import require_sentences
 from .balance import EnergyBalance
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import warnings
@@ -74,6 +75,7 @@ class Guards:
         state = p.position, p.velocity, p.stress, p.pressure, p.volume_ratio
         unsound = first_unsound(*state, LEAST_RATIO, MOST_RATIO, firsts)
         if unsound >= 0:
+            self._require_weights()
             stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
@@ -118,14 +120,21 @@ class Guards:
             )
         mapped = s.mapped_mass
         if mapped is not None and not abs(mapped - mass) <= DRIFT * mass:
-            total = s.sum_of_weights()
-            worst = int(np.argmax(np.abs(total - 1)))
-            if not abs(total[worst] - 1) <= DRIFT:
-                what = f"gave particle {p.number[worst]} weights that sum to {total[worst]:.9g} and not to 1"
-                raise PluginFault(s.case.scheme.shape, what, particle=int(p.number[worst]))
+            worst = self._require_weights()
             what = f"and the others have {mass:.9g} kg, but the nodes have got {mapped:.9g} kg of it"
             order = f"order '{s.case.scheme.order.name}' may not map it; try another one"
             raise _stopped(s, "mass-drift", worst, what, order)
+
+    def _require_weights(self) -> int:
+        """The particle whose sum of weights is farthest from one; PluginFault if by more than rounding."""
+        s = self._scene
+        total = s.sum_of_weights()
+        worst = int(np.argmax(np.abs(total - 1)))
+        if s.mapped_mass is not None and not abs(total[worst] - 1) <= DRIFT:
+            number = int(s.particles.number[worst])
+            what = f"gave particle {number} weights that sum to {total[worst]:.9g} and not to 1"
+            raise PluginFault(s.case.scheme.shape, what, particle=number)
+        return worst
 
     def _stop_of_energy(self, balance: EnergyBalance) -> NoReturn:
         s = self._scene
@@ -177,7 +186,7 @@ def remedy(s: SceneView) -> str:
     if exceeded:
         return f"likely since {exceeded[0]}: take that limit out of it"
     for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric):
-        for caution in plugin.cautions(s.case):
+        for caution in require_sentences(plugin, "cautions", plugin.cautions(s.case)):
             return f"likely since {caution}"
     fraction = scheme.time_step.fraction
     return f"likely the step is too long: reduce scheme.time_step.fraction, which is {fraction:g}"

@@ -9,10 +9,14 @@ import psutil
 
 from ..case.model import Case
 from ..case.output import ROWS
+from ..case.plugins import plugins_of
+from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
 from ..output import PARTICLE_VARIABLES
+from ..registry import audit
+from ..registry.blame import blaming_plugins
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -52,11 +56,13 @@ def bytes_per_particle(case: Case) -> int:
     """State of a particle, its tables of weights, and what is held of it for a moment."""
     dim, support = case.space_.dim, case.scheme.shape.support
     laws = [body.material.constitutive_law for body in case.bodies]
+    with blaming_plugins(plugins_of(case)):  # they say what a particle carries
+        state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
+        has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
     number_mass_volumes_pressures_rate = 8
-    vectors = 4 * dim + dim * (case.scheme.shape.particle_domain != "fixed")
+    vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
-    state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
     doubles = (
         number_mass_volumes_pressures_rate
         + vectors

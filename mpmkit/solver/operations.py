@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +50,8 @@ class SceneOperations:
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
         self._begun = 0
-        self._rehearsing = self._auditing = True
+        self._auditing = self._rehearsing = True
+        self._account = audit.Account()
         self.allocate()
 
     def allocate(self) -> None:
@@ -110,6 +113,11 @@ class SceneOperations:
             tables = tuple(table[:, 1:] for table in tables)  # type: ignore[assignment]
         position, half_size, base, weight, gradient = tables
         shape.fill(position, half_size, dx, base, weight, gradient)
+        numbers = p.number
+        audit.require_bounds(shape, p.position, dx, self.base, self.window.ends, numbers)
+        if self._auditing:
+            audit.require_weights(shape, self.weight, self.gradient, dx, numbers)
+            audit.require_finite(shape, "a 'hoop'", self.hoop, numbers, ())
 
     def start(self) -> None:
         """Before the first step: read the affine part of an initial velocity off the grid."""
@@ -119,7 +127,9 @@ class SceneOperations:
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
+        self._account.begin()
         self.scheme.order.step(operations_for(self.scheme.order, self), dt)
+        self._account.require_whole(self.scheme.order, dt)
         self._stepped = True
 
     # --- Particles to nodes
@@ -130,11 +140,13 @@ class SceneOperations:
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
         nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
+        self._account.mapped(forces)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
         self._map(momentum=False, forces=True)
         self._fold(1 + dim, 1 + 2 * dim)
+        self._account.forced()
 
     def remap_velocity(self) -> None:
         self.map_to_grid(forces=False)
@@ -161,24 +173,38 @@ class SceneOperations:
         return float(self.window.nodes[:, 0].sum()) if self._stepped else None
 
     def solve_momentum(self, dt: float) -> None:
+        self._account.solved(dt)
         nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
 
     # --- Nodes to particles
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
+        self._account.moves(dt)
         self._gradient_due = velocity_gradient
+        moves = self.gravity.any() or self.particles.velocity.any()
+        before = self._places() if self._rehearsing and moves else None
         self.scheme.velocity.map_to_particles(operations_for(self.scheme.velocity, self), dt)
+        by_itself = before is None or not np.array_equal(before, self._places())
+        self._account.require_moved(self.scheme.velocity, dt, by_itself)
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
 
+    def _places(self) -> np.ndarray:
+        """Where some of the particles are, to see whether they are moved."""
+        return self.particles.position[: audit.SAMPLE].copy()
+
     def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
-        if not math.isfinite(flip):
+        self._account.advances(dt)
+        if not isinstance(flip, Real) or not math.isfinite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
+        if self._gradient_due:
+            self._account.graded()
         self._gradient_due = False
 
     def update_velocity_gradient(self) -> None:
         self._take(strain=True)
+        self._account.graded()
         self._gradient_due = False
 
     def _take(
@@ -199,6 +225,7 @@ class SceneOperations:
 
     def update_stress(self, dt: float) -> None:
         p = self.particles
+        self._account.stressed(dt)
         self._update_volumes(dt)
         self._follow_domains(dt)
         for group in p.groups:
@@ -232,8 +259,12 @@ class SceneOperations:
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
 
     def _pressure(self, group: Group, volume_ratio: np.ndarray) -> np.ndarray:
-        pressure, author = group.pressure(volume_ratio), group.equation_of_state
-        audit.require_shape(author, "pressure", pressure, volume_ratio.shape)
+        author, speed = group.equation_of_state, group.sound_speed
+        if self._rehearsing and speed is not None:
+            numbers = self.particles.number[group.part]
+            audit.rehearse_equation_of_state(author, volume_ratio, group.density, speed, numbers)
+        pressure = group.pressure(volume_ratio)
+        audit.require_array(author, "pressure", pressure, volume_ratio.shape)
         if self._auditing:
             numbers = self.particles.number[group.part]
             audit.require_finite(author, "a pressure", pressure, numbers, [volume_ratio])
@@ -252,39 +283,53 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        author = self.scheme.volumetric
-        treated = author.average(operations_for(author, self), field)
+        author, groups = self.scheme.volumetric, self.particles.groups
+        operations = operations_for(author, self)
+        if self._rehearsing:
+            rehearsed = audit.Rehearsed(field)
+            treated = rehearsed.result(author, author.average(operations, rehearsed.field))
+        else:
+            treated = author.average(operations, field)
         if treated is not field:
-            audit.require_shape(author, "average", treated, field.shape)
+            audit.require_array(author, "average", treated, field.shape)
             if self._auditing:
                 audit.require_finite(author, "an average", treated, self.particles.number, [field])
-            for group in self.particles.groups:
-                if not group.law.uses_equation_of_state:
-                    treated[group.part] = field[group.part]
+            if not all(group.law.uses_equation_of_state for group in groups):
+                treated = treated.copy()  # which may be one that the treatment keeps
+                for group in groups:
+                    if not group.law.uses_equation_of_state:
+                        treated[group.part] = field[group.part]
         return treated
 
     def relax_volume(self, dt: float) -> None:
-        treatment = self.scheme.volumetric
-        rate = treatment.relaxation_rate(operations_for(treatment, self))
+        author = self.scheme.volumetric
+        asked = author.relaxation_rate(operations_for(author, self))
+        rate = audit.require_number(author, "relaxation_rate", asked)
         self.relaxation.relax(self.averager, rate, dt)
 
     # --- Fields in general
 
     def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        _require_field(values, len(self.particles))
         self.averager.at_nodes(values, self._weights(weighting))
         return self.averager.at_particles()
 
     def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        _require_field(values, len(self.particles))
         self.averager.at_nodes(values, self._weights(weighting))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
+        _require_field(nodal, len(self.window.average))
         self.window.average[:, 0] = nodal
         return self.averager.at_particles()
 
     def _weights(self, weighting: Weighting) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
+        if weighting not in ("mass", "volume"):
+            asked = f"asked for an average by {weighting!r}; it must be by 'mass' or 'volume'"
+            raise PluginFault(None, asked)
         if weighting == "mass" or all(group.law.uses_equation_of_state for group in p.groups):
             return p.mass if weighting == "mass" else p.volume
         weights = p.volume.copy()
@@ -292,3 +337,14 @@ class SceneOperations:
             if not group.law.uses_equation_of_state:
                 weights[group.part] = 0.0
         return weights
+
+
+def _require_field(values: Any, count: int) -> None:
+    """Raise PluginFault, of the plug-in that called, unless values are ``count`` real numbers."""
+    if not isinstance(values, np.ndarray) or values.shape != (count,) or values.dtype.kind not in "fiu":
+        what = (
+            f"{values.shape} of {values.dtype}" if isinstance(values, np.ndarray) else type(values).__name__
+        )
+        raise PluginFault(
+            None, f"asked for an average of {what}; it must be an array of {count} real numbers"
+        )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
+from ..errors import PluginFault
 from ..kernels.sort import permute
+from ..registry.audit import require_number, require_sentences
 from .stateful import State, plain_state, restore_plain
 
 
@@ -27,13 +30,22 @@ class Group:
 
     @property
     def wave_speed(self) -> float:
-        """Fastest wave of the law, m/s."""
-        return self.law.wave_speed(self.density, self.sound_speed)
+        """Fastest wave of the law, m/s.
+
+        Raises:
+            PluginFault: it is no number, or not positive.
+        """
+        given = self.law.wave_speed(self.density, self.sound_speed)
+        speed = require_number(self.law, "wave_speed", given)
+        if not speed > 0 and (self.sound_speed is None or math.isfinite(self.sound_speed)):
+            raise PluginFault(self.law, f"has a wave speed of {speed} m/s; it must be positive")
+        return speed
 
     @property
     def remarks(self) -> list[str]:
         """What the law has to say of itself in this material."""
-        return self.law.remarks(self.density, self.sound_speed)
+        said = self.law.remarks(self.density, self.sound_speed)
+        return require_sentences(self.law, "remarks", said)
 
     def pressure(self, volume_ratio: np.ndarray) -> np.ndarray:
         """Pressure of the equation of state, Pa; for a law that uses one."""

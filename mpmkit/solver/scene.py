@@ -9,6 +9,7 @@ from ..case.sound_speed import SoundSpeedMach
 from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import Sample, sample, shared_volume
+from ..registry import audit
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
@@ -40,7 +41,7 @@ def make_particles(case: Case) -> Particles:
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
     n = len(position)
-    rule = case.scheme.shape.particle_domain
+    rule = audit.particle_domain(case.scheme.shape)
     affine = case.space_.dim if case.scheme.velocity.affine else 0
     particles = Particles(
         number=np.arange(n, dtype=np.int64),

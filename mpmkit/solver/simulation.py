@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager
 
 import numpy as np
 
 from ..case.model import Case
+from ..case.plugins import plugins_of
 from ..kernels.sums import kinetics
+from ..registry.blame import blaming_plugins
 from .grid import Grid
 from .guards import Guards, stop
 from .measures import Measures
@@ -41,14 +44,20 @@ class Simulation:
         """
         self.case = case
         self.fraction = fraction
+        self.time = 0.0
+        self.steps = 0
+        self._plugins = plugins_of(case)
+        with self.blaming():
+            self._set_up(particles)
+
+    def _set_up(self, particles: Particles | None) -> None:
+        case = self.case
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
         self.measures = Measures.of(case, self.grid, self.particles)
-        self.time = 0.0
-        self.steps = 0
         self.limits: Limits
         self.time_step: float
         self.limited_by: str
@@ -82,8 +91,16 @@ class Simulation:
         self.limits = Limits(*map(float, state["limits/"]))
         restore(self.components, state)
 
+    def blaming(self) -> AbstractContextManager[None]:
+        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
+        return blaming_plugins(self._plugins, lambda: (self.steps, self.time))
+
     def choose_time_step(self) -> None:
         """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
+        with self.blaming():
+            self._choose_time_step()
+
+    def _choose_time_step(self) -> None:
         p = self.particles
         follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
         mass, doubled, square = kinetics(p.mass, p.velocity)
@@ -97,7 +114,8 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
-        said = [sentence for group in self.particles.groups for sentence in group.remarks]
+        with self.blaming():
+            said = [sentence for group in self.particles.groups for sentence in group.remarks]
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
@@ -108,7 +126,8 @@ class Simulation:
 
     def warnings(self) -> list[str]:
         """What the user should know of the step that was chosen."""
-        return warnings(self.case.scheme, self.limits, self.time_step)
+        with self.blaming():
+            return warnings(self.case.scheme, self.limits, self.time_step)
 
     def prepare(self) -> None:
         """Every few steps, look at the guards, split, and choose the step; ``advance`` begins with it.
@@ -131,8 +150,12 @@ class Simulation:
         """One step, no longer than ``at_most`` seconds; returns its length.
 
         Raises:
-            GuardStop: the run is beyond saving, see ``guards``.
+            GuardStop: the run is beyond saving, see ``guards``, or a plug-in is at fault.
         """
+        with self.blaming():
+            return self._advance(at_most)
+
+    def _advance(self, at_most: float) -> float:
         self.prepare()
         try:
             lost = self.operations.begin()
@@ -170,4 +193,5 @@ class Simulation:
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
-        self.guards.check()
+        with self.blaming():
+            self.guards.check()

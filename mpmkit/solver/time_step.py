@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass
 
 from ..case.model import Scheme
+from ..contracts import UpdateOrder, VelocityUpdate
 from ..errors import PluginFault
+from ..registry.audit import require_number
 from .particles import Group
 
 VISCOUS_NUMBER = 0.375
@@ -43,7 +45,8 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
     acoustic = viscous = math.inf
     for group in groups:
         acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
-        viscosity = group.law.largest_viscosity(largest_rate)
+        given = group.law.largest_viscosity(largest_rate)
+        viscosity = require_number(group.law, "largest_viscosity", given)
         if not viscosity >= 0:
             raise PluginFault(
                 group.law, f"has a largest viscosity of {viscosity} Pa s; it must not be negative"
@@ -53,12 +56,24 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
 
 
 def borne_by(scheme: Scheme) -> dict[str, float]:
-    """Part of each limit, by name, at which the schemes are still stable."""
+    """Part of each limit, by name, at which the schemes are still stable.
+
+    Raises:
+        PluginFault: one of them says what is no part of anything.
+    """
+    order, velocity = scheme.order, scheme.velocity
     return {
-        "acoustic": min(scheme.order.acoustic_fraction, scheme.velocity.acoustic_fraction),
-        "viscous": scheme.order.viscous_fraction,
+        "acoustic": min(_fraction(order, "acoustic_fraction"), _fraction(velocity, "acoustic_fraction")),
+        "viscous": _fraction(order, "viscous_fraction"),
         "advective": 1.0,
     }
+
+
+def _fraction(plugin: UpdateOrder | VelocityUpdate, name: str) -> float:
+    fraction = require_number(plugin, name, getattr(plugin, name))
+    if not 0 < fraction < math.inf:
+        raise PluginFault(plugin, f"has {fraction:g} as {name}; it must be above 0, and finite")
+    return fraction
 
 
 def choose_step(scheme: Scheme, found: Limits, fraction: float | None = None) -> tuple[float, str]:
