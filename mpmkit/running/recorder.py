@@ -64,9 +64,9 @@ class Recorder:
         """Add a row, and a frame, where one is due."""
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
-            self._add_row()
+            self.add_last_row()
         if self.frames is not None and self._frames_due.passed(now):
-            self._add_frame()
+            self.add_last_frame()
 
     @property
     def components(self) -> dict[str, Stateful]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ..case.model import Case
+from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from .grid import Grid
 from .guards import Guards, stop
@@ -38,7 +39,11 @@ class Simulation:
             case: a validated case.
             particles: a state to go on from; the case's bodies in their places unless told.
             fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
+
+        Raises:
+            MpmkitError: this process was forked from one that had used the threads.
         """
+        require_threads()
         self.case = case
         self.fraction = fraction
         self.grid = Grid.of(case)
