@@ -86,8 +86,7 @@ def test_two_runs_at_once_each_have_a_log_of_their_own(tmp_path):
 def test_a_case_is_equal_to_its_copies(path):
     case, again = load_case(path), load_case(path)
     for one in (case, again):  # what they compute is kept, and does not make them differ
-        assert one.gravity_vector.any()
-        assert len(one.domain_bounds) == 2
+        assert len(one.gravity_vector) == len(one.domain_bounds[0]) == case.space_.dim
     for other in (again, copy.copy(case), copy.deepcopy(case), pickle.loads(pickle.dumps(case))):
         assert other == case
         assert type(other) is type(case)
@@ -185,15 +184,13 @@ def test_an_encoding_that_lacks_our_characters(tmp_path, encoding, arguments):
     )
     assert done.returncode == 0, done.stderr
     assert b"Traceback" not in done.stderr
-    said = done.stdout.decode(encoding)
+    # click takes an output in ASCII for one that was set up wrongly, and writes UTF-8 to it.
+    said = done.stdout.decode("utf-8" if encoding == "ascii" else encoding)
     if arguments[0] == "run":
         assert "T500" in said
         assert "results in runs" in said
-    if arguments[0] == "schema":  # JSON loses nothing
-        main_schema = json.loads(said)
-        assert "Σ" in json.dumps(main_schema, ensure_ascii=False) or "√" in json.dumps(
-            main_schema, ensure_ascii=False
-        )
+    if arguments[0] == "schema":
+        assert "√(2 g h)" in json.dumps(json.loads(said), ensure_ascii=False)  # JSON loses nothing
 
 
 def test_json_is_as_it_is_in_utf_8(capsys):
