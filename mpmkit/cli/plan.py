@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 
 import click
 
 from . import options
 from .duration import duration
+from .printing import echo_json
 
 MOST_COUNTED = 10**15
 """From here on nobody reads the digits."""
@@ -32,7 +32,7 @@ def command(
 
     cost = plan(loaded, threads)
     if as_json:
-        click.echo(json.dumps(cost, indent=2, ensure_ascii=False))
+        echo_json(cost)
         return
     speeds = [speed for speed in cost["sound_speed"] if speed is not None]
     lines = [

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from typing import Any
 
 import click
 
 from . import options
+from .printing import echo_json
 
 COLUMNS = ("kind", "name", "distribution", "citation")
 
@@ -36,7 +36,7 @@ def command(as_json: bool) -> None:
     ]
     if as_json:
         problems = [asdict(problem) for problem in registry.problems]
-        click.echo(json.dumps({"plugins": found, "problems": problems}, indent=2, ensure_ascii=False))
+        echo_json({"plugins": found, "problems": problems})
         return
     rows = [COLUMNS] + [
         (entry["kind"], entry["name"], f"{entry['distribution']} {entry['version']}", entry["citation"])

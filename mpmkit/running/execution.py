@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from ..case.plugins import cautions, plugins_of
 from ..errors import GuardStop, Interrupted, OutputError, reason
+from ..output.checkpoints import Checkpoints
 from ..registry.blame import blaming_plugins
 from ..solver.simulation import Simulation
 from .conclusion import conclude, salvage
@@ -74,9 +75,10 @@ def execute(
         salvage(recorder, stop.guard, watch.elapsed)
         raise
     except KeyboardInterrupt as stop:
-        saved = isinstance(stop, _HeldInterrupt) and saver is not None and saver.save_if_possible()
+        if isinstance(stop, _HeldInterrupt) and saver is not None:
+            saver.save_if_possible()
         salvage(recorder, "interrupted", watch.elapsed)
-        raise Interrupted(_interrupted(recorder, saved)) from None
+        raise Interrupted(_interrupted(recorder)) from None
     except OutputError as error:
         LOGGER.error("%s", error)
         salvage(recorder, "output-error", watch.elapsed)
@@ -87,12 +89,13 @@ def execute(
         raise
 
 
-def _interrupted(recorder: Recorder, saved: bool) -> str:
+def _interrupted(recorder: Recorder) -> str:
     at = f"interrupted at t = {recorder.simulation.time:.6g} s"
     if recorder.directory is None:
         return at
     path = recorder.directory.path
-    more = f"; go on with: mpmkit run --resume {path}" if saved else ""
+    can_go_on = Checkpoints(recorder.directory.checkpoints).paths()
+    more = f"; go on with: mpmkit run --resume {path}" if can_go_on else ""
     return f"{at}; the results up to then are in '{path}'{more}"
 
 

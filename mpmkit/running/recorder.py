@@ -69,9 +69,9 @@ class Recorder:
         self.milestones.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
-            self._add_row()
+            self.add_last_row()
         if self.frames is not None and self._frames_due.passed(now):
-            self._add_frame()
+            self.add_last_frame()
 
     @property
     def components(self) -> dict[str, Stateful]:

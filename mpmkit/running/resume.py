@@ -87,7 +87,7 @@ def for_longer(case: Case, until: float | None, directory: Path) -> Case:
             f"until is {until:g} s; the run in '{directory}' ends at {case.until:g} s, "
             "and can only go on to a later time"
         )
-    return case.model_copy(update={"until": float(until)})
+    return load_case(RunDirectory(directory).case, [f"until={until!r}"])
 
 
 def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray], dict[str, Any]]:

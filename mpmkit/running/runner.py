@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..case.model import Case
 from ..case.plugins import plugins_of
 from ..errors import CaseError, GuardStop, OutputError, Undrawn, reason
+from ..kernels.environment import require_threads
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
 from ..output.log import RECORD
@@ -64,7 +65,9 @@ def run(
         GuardStop: the run diverged, or a plug-in raised an exception; everything up to then is in the run
             directory.
         OutputError: the run directory cannot be written, or another run is writing it.
+        MpmkitError: this process was forked from one in which there was a run before.
     """
+    require_threads()
     require_memory(case)
     files = [] if out is None else named_files(case)
     with blaming_plugins(plugins_of(case)):
@@ -131,6 +134,7 @@ def resume(
             ``until`` is too early.
         GuardStop, OutputError: as of ``run``.
     """
+    require_threads()
     path = Path(directory)
     before = case_of(path)
     found = for_longer(before, until, path)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
+from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
 from .grid import Grid
@@ -41,7 +42,11 @@ class Simulation:
             case: a validated case.
             particles: a state to go on from; the case's bodies in their places unless told.
             fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
+
+        Raises:
+            MpmkitError: this process was forked from one that had used the threads.
         """
+        require_threads()
         self.case = case
         self.fraction = fraction
         self.time = 0.0
