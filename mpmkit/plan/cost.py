@@ -12,7 +12,7 @@ from ..case.plugins import cautions, plugins_of
 from ..errors import CaseError, GuardStop
 from ..registry.blame import blaming_plugins
 from ..running.threads import use_threads
-from ..solver.memory import expected_bytes, require_memory
+from ..solver.memory import checkpoint_bytes, expected_bytes, require_memory
 from ..solver.simulation import Simulation
 from .cheaper import cheaper_models
 from .expectation import expected_error
@@ -39,7 +39,8 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     Returns:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
         ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
-        each, at the start), ``memory_bytes`` (at the end), ``expected_seconds``, ``remarks`` (of the laws),
+        each, at the start), ``memory_bytes`` (at the end), ``checkpoint_bytes`` (more, while a
+        checkpoint is written), ``expected_seconds``, ``remarks`` (of the laws),
         ``warnings``, ``expected_error`` (of the spread, see ``advice``; None if not known), ``cheaper``
         (models, each with ``name``, ``why``, ``changes`` by path, ``options`` for the command line,
         ``particles``, ``steps``, ``expected_seconds`` and ``expected_error``).
@@ -98,6 +99,7 @@ def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
         "limited_by": limited_by,
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, at_end),
+        "checkpoint_bytes": checkpoint_bytes(case, at_end),
         "expected_seconds": steps * _mean_seconds(seconds_per_step, particles, growth),
         "remarks": remarks,
         "warnings": warnings + stopped,
