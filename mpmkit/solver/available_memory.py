@@ -18,8 +18,8 @@ def available_memory() -> int:
     """Bytes that can still be allocated.
 
     It is the least of four: what the machine has free; what the control groups of this process may still take
-    (version 1 and 2, by which containers and most batch systems hold a job); what Slurm has granted to the job;
-    and what is left of the address space (``ulimit -v``).
+    (version 1 and 2, by which containers and most batch systems hold a job); what Slurm has granted to the
+    job; and what is left of the address space (``ulimit -v``).
     """
     left = [psutil.virtual_memory().available, *_of_control_groups(), *_of_slurm(), *_of_address_space()]
     return max(0, int(min(left)))
