@@ -7,6 +7,7 @@ import time as clock
 from statistics import median
 from typing import Any
 
+from ..case.forewarnings import forewarnings
 from ..case.model import Case
 from ..case.plugins import cautions, plugins_of
 from ..errors import CaseError, GuardStop
@@ -80,7 +81,8 @@ def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
     use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
-    warnings, remarks = [*cautions(case), *simulation.warnings()], simulation.remarks()
+    warnings = [*cautions(case), *forewarnings(case), *simulation.warnings()]
+    remarks = simulation.remarks()
     if not math.isfinite(case.until / step):
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"

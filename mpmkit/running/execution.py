@@ -7,6 +7,7 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..case.forewarnings import forewarnings
 from ..case.plugins import cautions, plugins_of
 from ..errors import GuardStop, Interrupted, MpmkitError, OutputError, reason
 from ..registry.blame import blaming_plugins
@@ -112,7 +113,8 @@ def _announce(simulation: Simulation, threads: int) -> None:
         LOGGER.info("goes on after step %d, t = %.6g s", simulation.steps, simulation.time)
     for sentence in simulation.remarks():
         LOGGER.info("%s", sentence)
-    for sentence in [*cautions(simulation.case), *simulation.warnings()]:
+    case = simulation.case
+    for sentence in [*cautions(case), *forewarnings(case), *simulation.warnings()]:
         LOGGER.warning("%s", sentence)
 
 
