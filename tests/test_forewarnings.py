@@ -1,6 +1,7 @@
 """What is said of a scene before it is run: missing floors, walls that pull, bodies that touch, units."""
 
 import json
+import time
 from pathlib import Path
 
 import pytest
@@ -132,7 +133,7 @@ LIQUIDS, CONTACT = "are not to be trusted", "there is no contact between bodies 
 def test_two_liquids_that_touch_are_not_to_be_trusted():
     layers = box([0, 0], [2, 0.5], MUD), box([0, 0.5], [2, 1], WATER)
     (sentence,) = forewarnings(scene(*layers, faces=FLOOR))
-    assert "bodies.0 and bodies.1 are two fluids that touch" in sentence
+    assert "bodies.0 and bodies.1 are two fluids that touch, or come to" in sentence
     assert LIQUIDS in sentence
     same = box([0, 0], [2, 0.5], MUD), box([0, 0.5], [2, 1], MUD)
     assert said(scene(*same, faces=FLOOR)) == ""
@@ -174,6 +175,16 @@ def test_pieces_of_one_body_and_bodies_that_never_meet_are_not():
         box([1, 0.5], [1.5, 1], RUBBER, velocity=[0.1, 0]),
     )
     assert said(scene(*parting, gravity=(0, 0))) == ""
+
+
+def test_of_very_many_bodies_a_few_are_said_at_once():
+    drops = [
+        box([0.02 * k, 0.1], [0.02 * k + 0.01, 0.11], RUBBER if k % 2 else MUD, velocity=[0.1 * (k % 3), 0])
+        for k in range(100)
+    ]
+    begin = time.perf_counter()
+    assert len(forewarnings(scene(*drops, faces=FLOOR))) == 5
+    assert time.perf_counter() - begin < 1
 
 
 def test_of_the_shipped_cases_the_discs_alone_are_warned_and_of_contact_alone():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shlex
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -96,7 +97,7 @@ def _interrupted(recorder: Recorder, saved: bool) -> str:
     if recorder.directory is None:
         return at
     path = recorder.directory.path
-    more = f"; go on with: mpmkit run --resume {path}" if saved else ""
+    more = f"; go on with: mpmkit run --resume {shlex.quote(str(path))}" if saved else ""
     return f"{at}; the results up to then are in '{path}'{more}"
 
 
