@@ -217,6 +217,20 @@ def test_a_value_that_cannot_be_meant_is_said_with_what_is_usual(changes, expect
     assert expected in " | ".join(implausible(load_case(CASES / "slump.json", changes)))
 
 
+@pytest.mark.parametrize("size", [1e-290, 1e-30, 1e30, 1e290])
+def test_numbers_beyond_any_scale_are_said_and_do_no_harm(size):
+    changes = [
+        f'grid={{"cell_size": {size / 10}, "domain": {{"r": [0, {size}], "z": [0, {size}]}}}}',
+        f'bodies.0.shape={{"kind": "cylinder", "radius": {size / 2}, "height": {size / 2}}}',
+        f"bodies.0.material.density={min(size, 1e200)}",
+        f"bodies.0.velocity=[0, {1 / size}]",
+        "bodies.0.material.sound_speed=1e-5",
+    ]
+    found = " | ".join(forewarnings(load_case(CASES / "slump.json", changes)))
+    assert f"the bodies are {size / 2:.4g} m high" in found
+    assert f"density is {min(size, 1e200):.4g} kg/m³" in found
+
+
 def body(shape, gravity=None, **material):
     case = {"space": "axisymmetric", "until": 1, "bodies": [{"shape": shape, "material": material}]}
     case["grid"] = {"cell_size": 0.001, "domain": {"r": [0, 2], "z": [0, 2]}}

@@ -27,7 +27,8 @@ NOTICED = 0.1
 def forewarnings(case: Case) -> list[str]:
     """A sentence for each thing that the scene is known to do wrong, and each value that cannot be meant."""
     kinds = (_falls_out, _hangs, _touching, implausible)
-    return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
+    with np.errstate(all="ignore"):  # a case may have numbers whose products are beyond any
+        return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
 
 
 # --- Walls
@@ -50,7 +51,8 @@ def _falls_out(case: Case) -> Iterator[str]:
         ends = case.grid.domain[case.space_.axes[axis]]
         distance = float(ends[1] - upper[axis]) if g[axis] > 0 else float(lower[axis] - ends[0])
         speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
-        time = (math.sqrt(max(0.0, speed**2 + 2 * abs(g[axis]) * distance)) - speed) / abs(g[axis])
+        pull = abs(float(g[axis]))
+        time = (math.hypot(speed, math.sqrt(2 * pull * max(0.0, distance))) - speed) / pull
         if time <= case.until:
             when = "at once" if time < 1e-6 * case.until else f"after about {time:.2g} s"
             yield (

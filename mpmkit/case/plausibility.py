@@ -63,7 +63,7 @@ def _on_earth(case: Case, strength: float) -> Iterator[str]:
             )
         weight = material.density * strength * height
         stress = getattr(material, "yield_stress", None)
-        if isinstance(stress, float) and stress > 0:
+        if isinstance(stress, float) and stress > 0 and weight > 0:
             ratio = stress / weight
             if not YIELD_STRESSES[0] <= ratio <= YIELD_STRESSES[1]:
                 effect = "is not felt" if ratio < YIELD_STRESSES[0] else "keeps the material from flowing"

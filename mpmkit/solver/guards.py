@@ -172,7 +172,7 @@ def remedy(s: SceneView) -> str:
             f"the material is torn: {100 * torn:.2g} % of its volume is in boxes longer than a cell, which "
             f"no shorter step mends, but {cure} may; if it holds longer with a shorter step, {step}"
         )
-    return f"likely the step is too long: {step}; if half of it stops at the same time, it is not"
+    return f"likely the step is too long: {step}; it is not, if half of that stops at the same time"
 
 
 def _torn(s: SceneView) -> float:
