@@ -7,6 +7,7 @@ import json
 import shlex
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from mpmkit.case.resolved import resolved
 from mpmkit.cli.commands import execute
 from mpmkit.contracts import ElastoviscoplasticLaw
 from mpmkit.plan import cheaper_models, expected_error, plan
+from mpmkit.running.execution import _interrupted
 from mpmkit.solver.memory import expected_particles
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -311,6 +313,14 @@ def test_the_commands_run_the_case_as_it_was_asked_for(monkeypatch, tmp_path, ca
     written = load_case("run/case.json")
     assert (written.space, written.until) == ("axisymmetric", 0.05)
     assert written.bodies[0].material.density == 1900
+
+
+def test_the_command_that_goes_on_with_a_run_can_be_typed_as_it_stands():
+    directory = SimpleNamespace(path=Path("runs/it's mine"))
+    stopped = SimpleNamespace(simulation=SimpleNamespace(time=1.0), directory=directory)
+    said = _interrupted(stopped, saved=True)
+    typed = shlex.split(said.partition("go on with: ")[2])
+    assert typed == ["mpmkit", "run", "--resume", "runs/it's mine"]
 
 
 def test_a_run_of_seconds_needs_no_advice():

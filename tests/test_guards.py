@@ -94,8 +94,32 @@ def test_non_finite(field, value):
 def test_particle_outside():
     said, where = stopped(scene(velocity=(3.0, 0.0)), "particle-outside", steps=1000)
     assert "left the grid at x = 2.0" in said
-    assert "enlarge grid.domain or close that face; or, if it was thrown out" in said
+    assert "enlarge grid.domain or close that face, x_max; or, if it was thrown out" in said
     assert where >= 0
+
+
+@pytest.mark.parametrize("face", ["slip", "stick", {"kind": "friction", "coefficient": 0.4}])
+def test_a_particle_thrown_through_a_closed_face_is_not_told_to_close_it(face):
+    simulation = scene(faces={"x_max": face})
+    simulation.advance()
+    simulation.particles.position[3, 0] = 2.3
+    said, _ = stopped(simulation, "particle-outside", steps=1)
+    assert "left the grid at x = 2.3" in said
+    assert "through a face that is closed; likely the step is too long" in said
+    assert "close that face" not in said
+
+
+def test_material_that_is_torn_is_not_told_that_its_step_is_too_long():
+    """No shorter step joins what is drawn out longer than a cell."""
+    simulation = scene()
+    simulation.advance()
+    p = simulation.particles
+    p.box[:16, 0] = 0.06  # of the half of the particles; a cell is 0.1 m
+    p.volume_ratio[3] = 11.0
+    said, _ = stopped(simulation, "volume-ratio", steps=0)
+    assert "the material is torn: 25 % of its volume is in boxes longer than a cell" in said
+    assert "no shorter step mends, but smaller cells or scheme.splitting may" in said
+    assert "likely the step is too long" not in said
 
 
 @pytest.mark.parametrize("ratio", [-1.0, 0.0, 0.09, 11.0, np.nan])

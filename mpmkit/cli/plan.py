@@ -42,7 +42,8 @@ def command(
         *(f"  {name:<12} {limit:.4g} s" for name, limit in cost["limits"].items() if limit is not None),
         *(f"sound speed    {speed:.4g} m/s" for speed in speeds),
         f"steps          {_counted(cost['steps'])}",
-        f"memory         {max(1, round(cost['memory_bytes'] / 2**20)):,} MiB",
+        f"memory         {_mebibytes(cost['memory_bytes'])}, "
+        f"and {_mebibytes(cost['checkpoint_bytes'])} more while a checkpoint is written",
         f"expected time  {duration(max(1.0, cost['expected_seconds']))} on this machine",
         *cost["remarks"],
         *(f"warning: {sentence}" for sentence in cost["warnings"]),
@@ -82,6 +83,10 @@ def _advice(asked: str, cost: dict) -> list[str]:
 def _at_end(cost: dict) -> str:
     more = cost["particles_at_end"]
     return f", about {more:,} at the end" if more > cost["particles"] else ""
+
+
+def _mebibytes(size: int) -> str:
+    return f"{max(1, round(size / 2**20)):,} MiB"
 
 
 def _counted(number: int) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import logging
+import shlex
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..case.forewarnings import forewarnings
 from ..case.plugins import cautions, plugins_of
 from ..errors import GuardStop, Interrupted, OutputError, reason
 from ..output.checkpoints import Checkpoints
@@ -95,7 +97,7 @@ def _interrupted(recorder: Recorder) -> str:
         return at
     path = recorder.directory.path
     can_go_on = Checkpoints(recorder.directory.checkpoints).paths()
-    more = f"; go on with: mpmkit run --resume {path}" if can_go_on else ""
+    more = f"; go on with: mpmkit run --resume {shlex.quote(str(path))}" if can_go_on else ""
     return f"{at}; the results up to then are in '{path}'{more}"
 
 
@@ -112,7 +114,8 @@ def _announce(simulation: Simulation, threads: int) -> None:
         LOGGER.info("goes on after step %d, t = %.6g s", simulation.steps, simulation.time)
     for sentence in [*setting(simulation.case), *simulation.remarks()]:
         LOGGER.info("%s", sentence)
-    for sentence in [*cautions(simulation.case), *simulation.warnings()]:
+    case = simulation.case
+    for sentence in [*cautions(case), *forewarnings(case), *simulation.warnings()]:
         LOGGER.warning("%s", sentence)
 
 

@@ -174,8 +174,12 @@ def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = Fa
     else:
         guard = "particle-outside"
         where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
-        what = f"left the grid at {where} m"
-        why = f"enlarge grid.domain or close that face; or, if it was thrown out, {why}"
+        what, open_ = f"left the grid at {where} m", _open_faces(s, position)
+        if open_:
+            faces = " and ".join(open_)
+            why = f"enlarge grid.domain or close that face, {faces}; or, if it was thrown out, {why}"
+        else:
+            what += ", through a face that is closed"
     raise _stopped(s, guard, index, what, why)
 
 
@@ -188,8 +192,36 @@ def remedy(s: SceneView) -> str:
     for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric):
         for caution in require_sentences(plugin, "cautions", plugin.cautions(s.case)):
             return f"likely since {caution}"
-    fraction = scheme.time_step.fraction
-    return f"likely the step is too long: reduce scheme.time_step.fraction, which is {fraction:g}"
+    step = f"reduce scheme.time_step.fraction, which is {scheme.time_step.fraction:g}"
+    torn = _torn(s)
+    if torn > 0:
+        cure = "smaller cells" if scheme.splitting else "smaller cells or scheme.splitting"
+        return (
+            f"the material is torn: {100 * torn:.2g} % of its volume is in boxes longer than a cell, which "
+            f"no shorter step mends, but {cure} may; if it holds longer with a shorter step, {step}"
+        )
+    return f"likely the step is too long: {step}; it is not, if half of that stops at the same time"
+
+
+def _torn(s: SceneView) -> float:
+    """Part of the volume in boxes that are drawn out longer than a cell along an axis."""
+    p = s.particles
+    volume = np.where(np.isfinite(p.volume), p.volume, 0.0)
+    drawn_out = (2 * p.box > s.grid.cell_size * (1 + 1e-9)).any(axis=1)
+    return float(volume[drawn_out].sum() / volume.sum()) if drawn_out.any() else 0.0
+
+
+def _open_faces(s: SceneView, position: np.ndarray) -> list[str]:
+    """Of the faces beyond which a position lies, those that are open."""
+    faces = s.case.grid.faces
+    lower, upper = s.case.domain_bounds
+    beyond = [
+        f"{axis}_{side}"
+        for a, axis in enumerate(s.grid.axes)
+        for side, out in (("min", position[a] < lower[a]), ("max", position[a] > upper[a]))
+        if out
+    ]
+    return [name for name in beyond if faces.get(name, "open") == "open" and name != "r_min"]
 
 
 def _fastest(s: SceneView) -> int:

@@ -9,12 +9,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-import psutil
 
 from ..kernels import sort
 from ..kernels.locate import LOST, STRAYED, locate, wrap
 from ..kernels.scatter import NODE
 from .active_nodes import ActiveNodes
+from .available_memory import available_memory
 from .grid import Grid, Window
 from .particles import Particles
 from .stateful import State, plain_state, restore_plain
@@ -135,6 +135,6 @@ class Sorting:
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
         low, high = self.window.touchable(self._low, self._high)
-        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > psutil.virtual_memory().available:
+        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > available_memory():
             away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)
             raise Scattered(int(np.argmax(away)))
