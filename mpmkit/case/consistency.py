@@ -10,9 +10,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .allowed import nearest, shown
+from ..output.variables import PARTICLE_VARIABLES
+from .allowed import nearest, one_of, shown
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .state_variables import state_variables
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
@@ -46,6 +48,17 @@ def check(case: Case) -> None:
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+    _check_particle_history(case)
+
+
+def _check_particle_history(case: Case) -> None:
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    for number, name in enumerate(case.output.particle_history):
+        if name not in allowed:
+            raise ValueError(
+                f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
+                f"{_meant(name, allowed)}"
+            )
 
 
 def _check_vector(field: str, value: list[float] | None, case: Case) -> None:

@@ -46,6 +46,9 @@ class Thixotropic(ConstitutiveLaw):
         kept = 1 - G * dt * rate / np.maximum(trial, np.finfo(float).tiny)
         stress[:] = voigt(kept[:, None, None] * s)
 
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
+        return (1 + state["structure"]) * self.yield_stress
+
     def shear_modulus(self, density: float, sound_speed: float | None) -> float:
         assert sound_speed is not None  # the law uses an equation of state
         return STIFFNESS * density * sound_speed**2
