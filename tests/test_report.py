@@ -88,8 +88,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
         }
         history.record(time, row)
         if step % 10 == 0:
-            half_size = np.full((len(start), 3), spacing / 2)
-            half_size[:, [0, 2]] *= scale[[0, -1]]
+            half_size = spacing / 2 * scale * np.ones_like(start)
             fields = {
                 "velocity": velocity,
                 "speed": np.linalg.norm(velocity, axis=1),

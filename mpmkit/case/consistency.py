@@ -11,11 +11,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import PluginFault
+from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
-from .allowed import shown
+from .allowed import one_of, shown
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .state_variables import state_variables
 from .synonyms import nearest
 
 WHOLE = 1e-6
@@ -53,6 +55,17 @@ def check(case: Case) -> None:
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+    _check_particle_history(case)
+
+
+def _check_particle_history(case: Case) -> None:
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    for number, name in enumerate(case.output.particle_history):
+        if name not in allowed:
+            raise ValueError(
+                f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
+                f"{_meant(name, allowed)}"
+            )
 
 
 def _check_vector(field: str, value: list[float] | None, case: Case) -> None:

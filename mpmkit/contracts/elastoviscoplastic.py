@@ -50,9 +50,16 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
 
     def remarks(self, density: float, sound_speed: float | None) -> list[str]:
         modulus = maxwell.shear_modulus(self.shear_modulus, density, sound_speed)
-        strain = float(np.ravel(self.flow_curve(np.array([REST_SHEAR_RATE])))[0]) / modulus
+        strain = self._yield_stress() / modulus
         percent = f"{100 * strain:.3g} %"
         return [f"law '{self.name}' is elastic up to a strain of tau0/G = {percent}, G = {modulus:.4g} Pa"]
+
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> np.ndarray | float:
+        return self._yield_stress()
+
+    def _yield_stress(self) -> float:
+        """f at rest, Pa."""
+        return float(np.ravel(self.flow_curve(np.array([REST_SHEAR_RATE])))[0])
 
     def strain_energy(
         self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray

@@ -50,6 +50,10 @@ class ElastoviscoplasticLawWithState(ElastoviscoplasticLaw):
         """The flow curve of the material as it is at the start."""
         return self.flow_curve_at(shear_rate, initial_state(self, len(shear_rate)))
 
+    def yield_point(self, state: State) -> np.ndarray:
+        count = len(next(iter(state.values())))
+        return self.flow_curve_at(np.full(count, REST_SHEAR_RATE), state)
+
     def update_stress(self, kinematics: Kinematics, state: State, dt: float, stress: np.ndarray) -> None:
         def flow(trial: np.ndarray, stiffness: float) -> np.ndarray:
             tau = one_each(self.relaxed_stress_at(trial, stiffness, state), trial, "relaxed_stress_at")

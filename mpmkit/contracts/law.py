@@ -140,6 +140,13 @@ class ConstitutiveLaw(Plugin):
         """What a user should know of the law in this material: sentences for the log and for ``plan``."""
         return []
 
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> np.ndarray | float | None:
+        """Shear stress √(s:s/2), Pa, beyond which the material flows, a number or ``(n,)``.
+
+        None for a law without a yield stress. Frames and histories show by it what has yielded.
+        """
+        return None
+
     def strain_energy(
         self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:

@@ -20,7 +20,8 @@ class FrameWriter:
 
     Args:
         directory: the ``frames/`` of a run; made if it is not there.
-        space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, 0, b).
+        space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, b, 0), so
+            that a viewer shows the scene from the front when it opens.
         goes_on: whether the frames of a run that goes on are there; ``restore`` says which of them stay.
     """
 
@@ -89,7 +90,7 @@ class FrameWriter:
 
     def _in_space(self, values: np.ndarray) -> np.ndarray:
         if self._planar and values.ndim == 2 and values.shape[1] == 2:
-            return np.insert(values, 1, 0, axis=1)
+            return np.insert(values, 2, 0, axis=1)
         return values
 
     def _write_list(self) -> None:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ..case.output import FRAMES, ROWS
-from ..output import FrameWriter, History, RunDirectory, Variable
-from ..solver.measures import PARTICLE_FIELDS, frame_fields
+from ..case.state_variables import state_variables
+from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory, Variable
+from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .milestones import Milestones
@@ -57,7 +58,8 @@ class Recorder:
         settings, until = case.output, case.until
         self.simulation = simulation
         self.directory = directory
-        self.history = History(COLUMNS, attributes, case.space_.axes)
+        variables = PARTICLE_VARIABLES | state_variables(case)
+        self.history = History(COLUMNS, attributes, case.space_.axes, variables)
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
@@ -115,10 +117,8 @@ class Recorder:
             "mach_number": simulation.mach_number,
         }
         by_number = np.argsort(particles.number)
-        fields: dict[str, np.ndarray] = {
-            name: PARTICLE_FIELDS[name](particles, simulation.grid)[by_number]
-            for name in simulation.case.output.particle_history
-        }
+        kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
+        fields = {name: field[by_number] for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
         if self.directory is not None:

@@ -9,6 +9,7 @@ import numpy as np
 from ..case.model import Case
 from ..case.output import ROWS
 from ..case.plugins import plugins_of
+from ..case.state_variables import state_variables
 from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
@@ -115,8 +116,9 @@ def _kept_rows(case: Case) -> float:
 def _doubles_per_row(case: Case) -> int:
     """Numbers a particle that a row of the history keeps, twice: once more while the file is written."""
     width = {"component": case.space_.dim, "tensor_component": 6}
-    fields = [PARTICLE_VARIABLES[name] for name in case.output.particle_history]
-    return 2 * sum(math.prod(width[dimension] for dimension in field.trailing) for field in fields)
+    known = PARTICLE_VARIABLES | state_variables(case)
+    fields = [known[name] for name in case.output.particle_history]
+    return 2 * sum(math.prod(f.shape or [width[dimension] for dimension in f.trailing]) for f in fields)
 
 
 def require_memory(case: Case) -> None:

@@ -73,7 +73,7 @@ def make_particles(case: Case) -> Particles:
     start = 0
     for material in materials:
         end = start + sum(c for c, (_, body) in zip(counts, bodies, strict=True) if body.material == material)
-        particles.groups.append(_group(case, material, slice(start, end)))
+        particles.groups.append(material_group(case, material, slice(start, end)))
         start = end
     return particles
 
@@ -85,7 +85,8 @@ def tracks_deformation(case: Case) -> bool:
     )
 
 
-def _group(case: Case, material: Material, part: slice) -> Group:
+def material_group(case: Case, material: Material, part: slice) -> Group:
+    """The particles ``part`` of a material, in the state in which a run begins."""
     law, count = material.constitutive_law, part.stop - part.start
     return Group(
         law=law,

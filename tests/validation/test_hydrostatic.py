@@ -19,7 +19,7 @@ from bands import below, close_to
 
 import mpmkit
 from mpmkit.registry import installed
-from mpmkit.solver.measures import mean_pressure
+from mpmkit.solver.particle_fields import mean_pressure
 
 pytestmark = pytest.mark.section(4)
 

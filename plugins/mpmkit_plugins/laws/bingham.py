@@ -1,5 +1,7 @@
 """Bingham's plastic, regularised."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numba import prange
 
@@ -29,6 +31,9 @@ class Bingham(GeneralisedNewtonianLaw):
         viscosity = np.empty(len(shear_rate))
         _viscosity(shear_rate, self.yield_stress, self.plastic_viscosity, self.regularisation, viscosity)
         return viscosity
+
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> float:
+        return self.yield_stress
 
 
 @kernel()
