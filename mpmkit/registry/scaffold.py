@@ -17,7 +17,14 @@ from ..output.atomic import cannot_write
 from ..version import __version__
 from . import installed
 
-KINDS = {"law": "constitutive law", "shape": "shape function", "order": "update order"}
+KINDS = {
+    "law": "constitutive law",
+    "shape": "shape function",
+    "order": "update order",
+    "velocity": "velocity update",
+    "volumetric": "volumetric treatment",
+    "equation_of_state": "equation of state",
+}
 """Kinds of plug-ins that there are templates for, and what they are called."""
 PREFIX = "mpmkit-"
 NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")

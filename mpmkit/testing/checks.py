@@ -7,9 +7,18 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
+from ..contracts import (
+    ConstitutiveLaw,
+    EquationOfState,
+    Operations,
+    Plugin,
+    ShapeFunction,
+    UpdateOrder,
+    VelocityUpdate,
+    VolumetricTreatment,
+)
 from ..errors import GuardStop, PluginFault
-from . import elastic, flight, law_promises, laws, radial, shapes
+from . import elastic, equations_of_state, flight, law_promises, laws, radial, shapes, volumetric
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
 from .scenes import SPACES
@@ -50,6 +59,16 @@ ON_SHAPES = (
     radial.far_from_the_axis,
 )
 ON_ORDERS = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.energy)
+ON_VELOCITIES = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.no_energy_from_nowhere)
+ON_TREATMENTS = (volumetric.constant_field, volumetric.power, volumetric.relaxation_rate)
+ON_EQUATIONS_OF_STATE = (
+    equations_of_state.arrays,
+    equations_of_state.natural_state,
+    equations_of_state.resists_compression,
+    equations_of_state.sound_speed,
+    equations_of_state.energy_gives_the_pressure,
+    equations_of_state.batch_order,
+)
 
 
 @dataclass(frozen=True)
@@ -66,7 +85,7 @@ class Check:
         try:
             self.run()
         except (Violation, GuardStop, PluginFault) as fault:
-            raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
+            raise Violation(f"{self.kind.replace('_', ' ')} '{self.plugin.name}': {fault}") from None
 
 
 def law_checks(
@@ -97,15 +116,36 @@ def shape_checks(shape: ShapeFunction) -> list[Check]:
 def order_checks(order: UpdateOrder) -> list[Check]:
     """What every update order must do, in each space, with the default shape function and undamped FLIP."""
     scheme = {"order": order, "velocity": _Undamped()}
+    return _of("order", order, _in_each_space(ON_ORDERS, scheme))
+
+
+def velocity_checks(velocity: VelocityUpdate) -> list[Check]:
+    """What every velocity update must do, in each space, with the default shape function and order."""
+    scheme = {"velocity": velocity}
+    fraction = ("acoustic_fraction", partial(flight.fraction, SPACES[0], scheme))
+    return _of("velocity", velocity, [fraction, *_in_each_space(ON_VELOCITIES, scheme)])
+
+
+def volumetric_checks(treatment: VolumetricTreatment) -> list[Check]:
+    """What every volumetric treatment must be, in each space, with the default schemes."""
+    return _of("volumetric", treatment, _in_each_space(ON_TREATMENTS, treatment))
+
+
+def equation_of_state_checks(state: EquationOfState) -> list[Check]:
+    """What every equation of state must be."""
     return _of(
-        "order",
-        order,
-        [
-            (f"{check.__name__} {space}", partial(check, space, scheme))
-            for check in ON_ORDERS
-            for space in SPACES
-        ],
+        "equation_of_state",
+        state,
+        [(check.__name__, partial(check, state)) for check in ON_EQUATIONS_OF_STATE],
     )
+
+
+def _in_each_space(
+    checks: Iterable[Callable[[str, Any], None]], subject: Any
+) -> list[tuple[str, Callable[[], Any]]]:
+    return [
+        (f"{check.__name__} {space}", partial(check, space, subject)) for check in checks for space in SPACES
+    ]
 
 
 def _in_place_first(
