@@ -2,38 +2,31 @@
 
 from __future__ import annotations
 
-import math
-
+import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, function, kernel
 
 
-@kernel()
-def first_astray(position, inverse_cell, base, support, close, lowest, highest, firsts):
-    """First particle whose nodes are more than a cell from its own, or are not stored; -1 without one.
+@function()
+def near(position, inverse_cell, base, least, most):
+    """Whether ``least <= base - position / cell <= most`` for all entries of two flat arrays."""
+    good = True
+    for k in range(len(base)):
+        away = base[k] - position[k] * inverse_cell
+        good &= (away >= least) & (away <= most)
+    return good
 
-    Args:
-        base: ``(n, dim)`` first node along each axis, of ``support`` nodes.
-        close: cells by which a position may be rounded.
-        lowest, highest: ``(dim,)`` first and last node that are stored.
-        firsts: scratch, an integer a chunk.
-    """
-    n, dim = position.shape
-    chunks = chunk_count(n)
-    for c in prange(chunks):
-        first = -1
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            good = True
-            for d in range(dim):
-                cells = position[p, d] * inverse_cell
-                low, high = base[p, d], base[p, d] + support - 1
-                good &= (low >= math.floor(cells - close) - 1) & (high <= math.floor(cells + close) + 2)
-                good &= (low >= lowest[d]) & (high <= highest[d])
-            if not good and first < 0:
-                first = p
-        firsts[c] = first
-    return _first(firsts, chunks)
+
+@kernel()
+def near_in_parallel(position, inverse_cell, base, least, most):
+    """As ``near``."""
+    n = len(base)
+    far = np.zeros(chunk_count(n), dtype=np.bool_)
+    for c in prange(len(far)):
+        part = slice(c * CHUNK, min(n, (c + 1) * CHUNK))
+        far[c] = not near(position[part], inverse_cell, base[part], least, most)
+    return not far.any()
 
 
 @kernel()
@@ -57,11 +50,6 @@ def first_untrue(weight, gradient, cell_size, close, firsts):
             if not good and first < 0:
                 first = p
         firsts[c] = first
-    return _first(firsts, chunks)
-
-
-@function()
-def _first(firsts, chunks):
     for c in range(chunks):
         if firsts[c] >= 0:
             return firsts[c]

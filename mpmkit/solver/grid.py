@@ -111,11 +111,6 @@ class Window:
         high = np.where(grid.periodic | (high >= grid.cells - GHOST), grid.cells + GHOST, high)
         return low, high
 
-    @property
-    def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """First and last node along each axis, ``(dim,)``."""
-        return self.lower, self.lower + self.shape[: self.grid.dim] - 1
-
     def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """Lay the window over the nodes that particles in these cells can touch; all are zero."""
         contacts = self._contacts()

@@ -75,7 +75,6 @@ class Guards:
         state = p.position, p.velocity, p.stress, p.pressure, p.volume_ratio
         unsound = first_unsound(*state, LEAST_RATIO, MOST_RATIO, firsts)
         if unsound >= 0:
-            self._require_weights()
             stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
@@ -130,7 +129,7 @@ class Guards:
         s = self._scene
         total = s.sum_of_weights()
         worst = int(np.argmax(np.abs(total - 1)))
-        if s.mapped_mass is not None and not abs(total[worst] - 1) <= DRIFT:
+        if not abs(total[worst] - 1) <= DRIFT:
             number = int(s.particles.number[worst])
             what = f"gave particle {number} weights that sum to {total[worst]:.9g} and not to 1"
             raise PluginFault(s.case.scheme.shape, what, particle=number)
@@ -148,7 +147,12 @@ class Guards:
 
 
 def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
-    """Raise the GuardStop that fits what has become of a particle."""
+    """Raise the GuardStop that fits what has become of a particle.
+
+    Raises:
+        PluginFault: weights that cannot be right have made it so.
+    """
+    s.require_tables()
     p, axes = s.particles, s.grid.axes
     position = p.position[index] + s.grid.lower
     state = np.concatenate([position, p.velocity[index], p.stress[index], p.pressure[index : index + 1]])

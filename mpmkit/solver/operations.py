@@ -113,11 +113,15 @@ class SceneOperations:
             tables = tuple(table[:, 1:] for table in tables)  # type: ignore[assignment]
         position, half_size, base, weight, gradient = tables
         shape.fill(position, half_size, dx, base, weight, gradient)
-        numbers = p.number
-        audit.require_bounds(shape, p.position, dx, self.base, self.window.ends, numbers)
-        if self._auditing:
-            audit.require_weights(shape, self.weight, self.gradient, dx, numbers)
-            audit.require_finite(shape, "a 'hoop'", self.hoop, numbers, ())
+        audit.require_bounds(shape, p.position, dx, self.base, p.number)
+        if self._begun % audit.LOOKS == 1:
+            self.require_tables()
+
+    def require_tables(self) -> None:
+        """Raise PluginFault if the weights of the present step cannot be right."""
+        shape, numbers = self.scheme.shape, self.particles.number
+        audit.require_weights(shape, self.weight, self.gradient, self.grid.cell_size, numbers)
+        audit.require_finite(shape, "a 'hoop'", self.hoop, numbers, ())
 
     def start(self) -> None:
         """Before the first step: read the affine part of an initial velocity off the grid."""
@@ -128,7 +132,11 @@ class SceneOperations:
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
         self._account.begin()
-        self.scheme.order.step(operations_for(self.scheme.order, self), dt)
+        try:
+            self.scheme.order.step(operations_for(self.scheme.order, self), dt)
+        except PluginFault:  # of one that was given nonsense, if the weights are wrong
+            self.require_tables()
+            raise
         self._account.require_whole(self.scheme.order, dt)
         self._stepped = True
 
@@ -195,7 +203,7 @@ class SceneOperations:
 
     def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
         self._account.advances(dt)
-        if not isinstance(flip, Real) or not math.isfinite(flip):
+        if not isinstance(flip, float | Real) or not math.isfinite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         if self._gradient_due:

@@ -192,6 +192,11 @@ class Simulation:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
         return self.operations.mapped_mass
 
+    def require_tables(self) -> None:
+        """Raise PluginFault if the weights of the last step, if there was one, cannot be right."""
+        if self.mapped_mass is not None:
+            self.operations.require_tables()
+
     def sum_of_weights(self) -> np.ndarray:
         """Σ N of every particle, ``(n,)``, of the last step: 1 but for rounding."""
         return np.prod(self.operations.weight.sum(axis=-1), axis=1)

@@ -95,7 +95,7 @@ def seconds(dt: Any) -> float:
     Raises:
         PluginFault: it is no finite number; of the plug-in that asked.
     """
-    if not isinstance(dt, Real) or not math.isfinite(dt):
+    if not isinstance(dt, float | Real) or not math.isfinite(dt):
         raise PluginFault(None, f"asked for a step of {dt!r} s; it must be a finite number")
     return float(dt)
 

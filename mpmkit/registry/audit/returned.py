@@ -27,6 +27,8 @@ def require_number(plugin: Plugin, what: str, value: Any) -> float:
     Raises:
         PluginFault: it is none of Python's or numpy's real numbers, nor an array of one.
     """
+    if isinstance(value, float):
+        return value
     single = isinstance(value, np.ndarray) and value.size == 1 and value.dtype.kind in "fiu"
     if not isinstance(value, Real) and not single:
         raise PluginFault(plugin, f"gave {described(value)} as {what}; it must be a number")

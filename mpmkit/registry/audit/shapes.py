@@ -7,8 +7,9 @@ import numpy as np
 from ...contracts import Plugin, ShapeFunction
 from ...errors import PluginFault
 from ...kernels.compile import CHUNK
-from ...kernels.tables import first_astray, first_untrue
+from ...kernels.tables import first_untrue, near, near_in_parallel
 from .fences import READ, WRITTEN, Fenced, require_intact, require_unchanged, sample
+from .returned import FEW
 
 CLOSE = 1e-6
 """How far sums of weights may be from what they must be: far above rounding, far below what would matter."""
@@ -79,29 +80,28 @@ def _require_linear(
 
 
 def require_bounds(
-    shape: ShapeFunction,
-    position: np.ndarray,
-    cell_size: float,
-    base: np.ndarray,
-    window: tuple[np.ndarray, np.ndarray],
-    numbers: np.ndarray,
+    shape: ShapeFunction, position: np.ndarray, cell_size: float, base: np.ndarray, numbers: np.ndarray
 ) -> None:
     """Raise PluginFault if a shape function leads a particle to nodes that are not there for it.
 
-    Args:
-        window: first and last node that are stored, along each axis.
+    It is called in every step: compiled loops go wherever ``base`` leads.
     """
-    firsts = np.empty(len(base) // CHUNK + 1, dtype=np.int64)
-    bad = int(first_astray(position, 1 / cell_size, base, shape.support, CLOSE, *window, firsts))
-    if bad >= 0:
-        cells = ", ".join(str(int(cell)) for cell in position[bad] // cell_size)
-        gave = ", ".join(str(first) for first in base[bad])
-        raise PluginFault(
-            shape,
-            f"gave particle {numbers[bad]}, in cell {cells}, the 'base' {gave}, which leads to nodes more "
-            "than a cell from the particle's own",
-            particle=int(numbers[bad]),
-        )
+    look = near if len(base) < FEW else near_in_parallel
+    # A node is an integer: to be at least floor(x) - 1 it must be more than x - 2, and to be at most
+    # floor(x) + 2 it must be at most x + 2.
+    least, most = -2 - CLOSE, 3 - shape.support + CLOSE
+    if look(position.reshape(-1), 1 / cell_size, base.reshape(-1), least, most):
+        return
+    away = base - position / cell_size
+    bad = int(np.argmax(((away < least) | (away > most)).any(axis=1)))
+    cells = ", ".join(str(int(cell)) for cell in position[bad] // cell_size)
+    gave = ", ".join(str(first) for first in base[bad])
+    raise PluginFault(
+        shape,
+        f"gave particle {numbers[bad]}, in cell {cells}, the 'base' {gave}, which leads to nodes more than a "
+        "cell from the particle's own",
+        particle=int(numbers[bad]),
+    )
 
 
 def require_weights(
