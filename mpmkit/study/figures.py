@@ -101,7 +101,8 @@ def _styles(shape: tuple[int, ...]) -> list[tuple[str, Any]]:
     Of more members than colours, one dimension of the grid goes by colour and the others by dashes.
     """
     colours, count = len(CATEGORIES), int(np.prod(shape))
-    by_number = [(n % colours, n // colours) for n in range(count)]
+    # Few members have dashes of their own as well, so that of two curves that coincide both are seen.
+    by_number = [(n % colours, n if count <= colours else n // colours) for n in range(count)]
     fitting = [axis for axis, size in enumerate(shape) if 1 < size <= colours]
     if count > colours and fitting:
         axis = max(fitting, key=lambda axis: shape[axis])
