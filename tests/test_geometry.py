@@ -584,13 +584,13 @@ def test_a_damaged_file_is_told_what_is_wrong_with_it(tmp_path, name):
     assert words in str(refused.value)
 
 
-@pytest.mark.parametrize("kind", ["stl", "ply", "obj", "off", "vtk"])
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj", "off", "vtk", "msh"])
 def test_a_file_cut_anywhere_gets_a_sentence(tmp_path, kind):
     """Or is read where nothing is missing but its last letters; never a traceback."""
     meshio = pytest.importorskip("meshio")
     pytest.importorskip("igl")
     whole = tmp_path / f"cube.{kind}"
-    if kind == "vtk":
+    if kind in ("vtk", "msh"):  # the second is Ansys'
         meshio.Mesh(CUBE, [("triangle", CUBE_FACES)]).write(whole)
     else:
         write(whole, CUBE, CUBE_FACES)

@@ -107,7 +107,11 @@ def _by_meshio(path: str) -> Surface:
     import meshio  # here, because it is slow to import and most cases have no mesh
 
     with _silence():
-        data = meshio.read(path, file_format=_msh_format(path) if path.lower().endswith(".msh") else None)
+        if path.lower().endswith(".msh") and not _is_gmsh(path):
+            with _Ending(io.FileIO(path)) as file:
+                data = meshio.read(file, file_format="ansys")
+        else:
+            data = meshio.read(path)
     polygons = []
     for block in data.cells:
         if block.type in ("triangle", "quad") or block.type.startswith("polygon"):
@@ -120,13 +124,21 @@ def _by_meshio(path: str) -> Surface:
     return np.asarray(data.points, dtype=float), fans(polygons)
 
 
-def _msh_format(path: str) -> str:
-    """Which of two formats a ``.msh`` file has: meshio tries both, and its reader of Ansys' may never end."""
+def _is_gmsh(path: str) -> bool:
+    """Whether a .msh file is Gmsh's and not Ansys': meshio itself tries both."""
     with open(path, "rb") as file:
-        first = file.read(64).lstrip()[:1]
-    if first not in (b"$", b"("):
-        raise Unusable("it does not begin with '$' or '(' as the .msh files of Gmsh and Ansys do")
-    return "gmsh" if first == b"$" else "ansys"
+        return file.read(64).lstrip()[:1] == b"$"
+
+
+class _Ending(io.BufferedReader):
+    """A file whose end is an error where one byte is wanted: meshio's reader of Ansys' .msh files waits for
+    a bracket for ever if the file is truncated."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        content = super().read(size)
+        if size == 1 and not content:
+            raise Unusable("it is truncated or damaged: a bracket is not closed")
+        return content
 
 
 @contextlib.contextmanager
