@@ -7,7 +7,6 @@ from pathlib import Path
 
 import psutil
 import pytest
-from mpmkit.solver.state import state_of
 from test_case import GOOD, changed
 
 from mpmkit.case import load_case, parse_case
@@ -115,7 +114,7 @@ def test_the_copy_that_a_checkpoint_makes_counts(tmp_path):
     case = load_case(CASES / "slump_fast.json", ["grid.cell_size=0.005", "grid.domain.z=[0, 0.305]"])
     simulation = Simulation(case)
     simulation.advance()
-    Checkpoints(tmp_path).write(1, state_of(simulation), {})
+    Checkpoints(tmp_path).write(1, simulation.state(), {})
     (file,) = tmp_path.glob("*.checkpoint")
     assert checkpoint_bytes(case, len(simulation.particles)) == pytest.approx(
         1.125 * file.stat().st_size, rel=0.1

@@ -27,7 +27,7 @@ class ActiveNodes:
         rows: ``(n, 2)``, the first node and the one after the last of every row along the last axis.
         tasks: ``(TASKS + 1,)``, rows cut into pieces of about equal load.
         faces: ``(dim, 2)``, the codes of the faces.
-        mirrors: ``(n, 3)``, ghost, image and node of the wall, plane by plane: none twice in a plane.
+        mirrors: ``(n, 3)``, ghost, image and node of the wall, plane by plane. No two of a plane share one.
         plane_first: ``(3 dim + 1,)``, the first of ``mirrors`` of each plane, and their number. The planes
             of an axis are the ghosts of its lower face, those of its upper face, and the upper face of a
             periodic axis, which is an image of the lower one.

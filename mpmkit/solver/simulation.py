@@ -17,6 +17,7 @@ from .guards import Guards, stop
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
+from .rest import put_under_weight
 from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
@@ -59,6 +60,7 @@ class Simulation:
         case = self.case
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
+        self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
@@ -121,6 +123,8 @@ class Simulation:
         """What the laws have to say of themselves, and what will change on the way."""
         with self.blaming():
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
+        if self.starts_under_weight:
+            said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
