@@ -172,7 +172,9 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
     """Parameters that are numbers each may make a wave that is none, and a step of zero."""
     try:
-        speed = material.constitutive_law.wave_speed(material.density, case.sound_speed(material))
+        sound = case.sound_speed(material)
+        law = material.constitutive_law.in_scene(material.density, sound, case.scale)
+        speed = law.wave_speed(material.density, sound)
     except OverflowError:
         speed = math.inf
     if not 0 < speed < MOST_SPEED:

@@ -7,7 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+from ..errors import PluginFault
 from ..kernels.sort import permute
+
+STIFFER = 1.05
+"""Wave speed over that of the unstrained material from which on the step follows it."""
 
 
 @dataclass
@@ -26,7 +30,7 @@ class Group:
 
     @property
     def wave_speed(self) -> float:
-        """Fastest wave of the law, m/s."""
+        """Fastest wave of the unstrained material, m/s."""
         return self.law.wave_speed(self.density, self.sound_speed)
 
     @property
@@ -122,6 +126,18 @@ class Particles:
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
         )
+
+    def wave_speed(self, group: Group) -> float:
+        """Fastest wave in the present state of a group, m/s; that of the unstrained one where it is hardly
+        slower, so that steps do not change all the time.
+
+        Raises:
+            PluginFault: the law gives none.
+        """
+        speed = group.law.present_wave_speed(self.motion(group), group.state)
+        if not speed >= 0:
+            raise PluginFault(group.law, f"has a wave speed of {speed} m/s; it must not be negative")
+        return speed if speed > STIFFER * group.wave_speed else group.wave_speed
 
     @property
     def nbytes(self) -> int:

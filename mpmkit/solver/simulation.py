@@ -21,6 +21,8 @@ from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
 """Steps between two looks at the limits of the time step; in as many, no flow changes its speed much."""
+IMPACT_INTERVAL = 5
+"""The same where there is a solid, which an impact stiffens within a dozen steps."""
 
 
 class Simulation:
@@ -55,18 +57,18 @@ class Simulation:
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
-        self._follows_flow = any(group.mach is not None for group in self.particles.groups)
+        fluid = all(group.law.uses_equation_of_state for group in self.particles.groups)
+        self._interval = CONTROL_INTERVAL if fluid else IMPACT_INTERVAL
         self.guards = Guards(self)
         self.choose_time_step()
 
     def choose_time_step(self) -> None:
-        """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
+        """Recompute the limits, and with them the step."""
         p = self.particles
-        follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
         mass, doubled, square = kinetics(p.mass, p.velocity)
         speed = math.sqrt(square)
         self.mach_number = mach_number(p, speed)
-        self.limits = limits(p.groups, self.grid.cell_size, speed)
+        self.limits = limits(p, self.grid.cell_size, speed, self.case.scale.rate)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = math.sqrt(doubled / mass)
@@ -79,13 +81,19 @@ class Simulation:
             if group.mach is not None:
                 said.append(
                     f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
-                    "a modulus that is made of it follows as well"
+                    "an elastic modulus stays as it is"
                 )
         return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
-        """What the user should know of the step that was chosen."""
-        return warnings(self.case.scheme, self.limits, self.time_step)
+        """What the user should know of the materials, and of the step that was chosen."""
+        scale, until = self.case.scale, self.case.until
+        of_materials = [
+            sentence
+            for group in self.particles.groups
+            for sentence in group.law.warnings(group.density, group.sound_speed, scale, until)
+        ]
+        return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.
@@ -94,12 +102,12 @@ class Simulation:
             GuardStop: the run is beyond saving, see ``guards``.
         """
         self.guards.begin()
-        if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
+        if self.steps % self._interval == 0 and self.steps > 0:
             self.check()
-            changed = self.case.scheme.splitting and self._split()
-            self.choose_time_step()
-            if changed or self._follows_flow:
+            if self.case.scheme.splitting and self._split():
                 self.guards.accept_changes()
+            self._follow_flow()
+            self.choose_time_step()
         try:
             lost = self.operations.begin()
         except Scattered as error:
@@ -114,6 +122,11 @@ class Simulation:
         self.steps += 1
         self.particle_steps += len(self.particles)
         return dt
+
+    def _follow_flow(self) -> None:
+        """Recompute the sound speeds that are to follow the flow."""
+        gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
+        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
 
     def _split(self) -> bool:
         """Split particles whose boxes are too long; whether there were any."""

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 from ..case.model import Scheme
 from ..errors import PluginFault
-from .particles import Group
+from .particles import Particles
 
 VISCOUS_NUMBER = 0.375
 """Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
+
+FROM_REST = 0.05
+"""Part of the scene's own rate that its flow comes to from rest until the next look at the limits."""
 
 
 @dataclass(frozen=True)
@@ -25,24 +28,25 @@ class Limits:
         return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
 
 
-def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limits:
+def limits(particles: Particles, cell_size: float, largest_speed: float, rate: float) -> Limits:
     """Critical steps of a scene.
 
-    acoustic: dx / c, with the law's fastest wave (eq. 5 of Ferreira et al.);
+    acoustic: dx / c, with the law's fastest wave in its present state (eq. 5 of Ferreira et al.);
     viscous: 0.375 rho dx² / mu, with the law's largest viscosity;
     advective: dx / |v|.
 
     Args:
-        groups: the materials.
+        particles: their materials and their state.
         cell_size: dx, m.
         largest_speed: largest particle speed, m/s.
+        rate: √e/h of the scene, 1/s, see ``contracts.scale``.
     """
     # No strain rate that the grid can resolve exceeds a jump of the largest speed over one cell; a scene
-    # at rest will move, so that at least 1 /s is allowed for.
-    largest_rate = max(2 * largest_speed / cell_size, 1.0)
+    # at rest will move, so that a part of the rate at which it could fall is allowed for.
+    largest_rate = max(2 * largest_speed / cell_size, FROM_REST * rate)
     acoustic = viscous = math.inf
-    for group in groups:
-        acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
+    for group in particles.groups:
+        acoustic = min(acoustic, _quotient(cell_size, particles.wave_speed(group)))
         viscosity = group.law.largest_viscosity(largest_rate)
         if not viscosity >= 0:
             raise PluginFault(
