@@ -26,7 +26,7 @@ class Swelling(ConstitutiveLaw):
     uses_equation_of_state = False
     pressure: float = quantity("Pa", "pressure", ge=0)
 
-    def update_stress(self, motion, state, dt, stress):
+    def update_stress(self, kinematics, state, dt, stress):
         stress[:, :3] = -self.pressure
 
     def wave_speed(self, density, sound_speed):

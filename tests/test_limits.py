@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mpmkit.case import parse_case
-from mpmkit.contracts import Motion
+from mpmkit.contracts import Kinematics
 from mpmkit.errors import GuardStop
 from mpmkit.registry import installed
 from mpmkit.solver.energies import kinetic_energy, strain_energy
@@ -21,7 +21,7 @@ def moving(F):
     """What the law is told of particles at rest with deformation gradients F."""
     F = np.array(F, dtype=float)
     n = len(F)
-    return Motion(
+    return Kinematics(
         velocity_gradient=np.zeros((n, 3, 3)), volume_ratio=np.linalg.det(F), pressure=np.zeros(n),
         density=DENSITY, deformation_gradient=F,
     )  # fmt: skip
@@ -110,7 +110,7 @@ def test_the_step_is_that_of_the_strained_solid():
     p, (group,) = simulation.particles, simulation.particles.groups
     assert shortest < 0.85 * first
     assert first == pytest.approx(0.05 / group.wave_speed)
-    assert simulation.limits.acoustic <= 1.1 * 0.05 / group.law.present_wave_speed(p.motion(group), {})
+    assert simulation.limits.acoustic <= 1.1 * 0.05 / group.law.present_wave_speed(p.kinematics(group), {})
 
 
 def thickening(slower):

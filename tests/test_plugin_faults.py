@@ -72,7 +72,7 @@ class Law(ConstitutiveLaw):
     citation = "none"
     state = {"age": StateVariable("s", "age")}
 
-    def update_stress(self, motion, state, dt, stress):
+    def update_stress(self, kinematics, state, dt, stress):
         stress[:] = 0.0
 
 
@@ -96,7 +96,7 @@ def _one_too_far(stress):
 
 def test_a_law_that_writes_beyond_its_stress():
     class Overrun(Law):
-        def update_stress(self, motion, state, dt, stress):
+        def update_stress(self, kinematics, state, dt, stress):
             _one_too_far(stress)
 
     assert "wrote beyond the ends of the array 'stress'" in blamed("law", Overrun, steps=1)
@@ -104,7 +104,7 @@ def test_a_law_that_writes_beyond_its_stress():
 
 def test_a_law_that_writes_beyond_its_state():
     class Overrun(Law):
-        def update_stress(self, motion, state, dt, stress):
+        def update_stress(self, kinematics, state, dt, stress):
             stress[:] = 0.0
             beyond = np.lib.stride_tricks.as_strided(state["age"], (len(stress) + 1,))
             beyond += dt
@@ -114,8 +114,8 @@ def test_a_law_that_writes_beyond_its_state():
 
 def test_a_law_that_reads_beyond_its_arrays_finds_no_number_there():
     class Overrun(Law):
-        def update_stress(self, motion, state, dt, stress):
-            ratio = np.lib.stride_tricks.as_strided(motion.volume_ratio, (len(stress) + 1,))
+        def update_stress(self, kinematics, state, dt, stress):
+            ratio = np.lib.stride_tricks.as_strided(kinematics.volume_ratio, (len(stress) + 1,))
             stress[:] = ratio[1:, None]
 
     assert "a stress that is not finite" in blamed("law", Overrun, steps=1)
@@ -124,15 +124,15 @@ def test_a_law_that_reads_beyond_its_arrays_finds_no_number_there():
 @pytest.mark.parametrize("field", ["velocity_gradient", "volume_ratio", "pressure"])
 def test_a_law_that_writes_to_what_it_may_only_read(field):
     class Meddler(Law):
-        def update_stress(self, motion, state, dt, stress):
-            getattr(motion, field)[-1] += 1e-3
+        def update_stress(self, kinematics, state, dt, stress):
+            getattr(kinematics, field)[-1] += 1e-3
 
     assert f"changed '{field}', which it may only read" in blamed("law", Meddler, steps=1)
 
 
 def test_a_law_that_returns_its_stress():
     class Returning(Law):
-        def update_stress(self, motion, state, dt, stress):
+        def update_stress(self, kinematics, state, dt, stress):
             return np.zeros_like(stress)
 
     assert "returned an array of shape (64, 6); it must write into 'stress'" in blamed("law", Returning)
@@ -140,7 +140,7 @@ def test_a_law_that_returns_its_stress():
 
 def test_a_law_that_replaces_its_state():
     class Replacing(Law):
-        def update_stress(self, motion, state, dt, stress):
+        def update_stress(self, kinematics, state, dt, stress):
             state["age"] = state["age"] + dt
 
     assert "replaced the array of its state 'age'" in blamed("law", Replacing)
@@ -148,7 +148,7 @@ def test_a_law_that_replaces_its_state():
 
 def test_a_law_that_gives_one_particle_no_number_later_on():
     class Late(Law):
-        def update_stress(self, motion, state, dt, stress):
+        def update_stress(self, kinematics, state, dt, stress):
             state["age"] += dt
             stress[:] = 0.0
             if state["age"][0] > 2.5 * dt:
@@ -247,7 +247,7 @@ def test_a_flip_that_is_no_number():
         citation = "none"
 
         def map_to_particles(self, ops, dt):
-            ops.advance(dt, flip=math.nan)
+            ops.move_particles(dt, flip=math.nan)
 
     assert "asked for a flip of nan" in blamed("velocity", Bad)
 

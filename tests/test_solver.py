@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 import mpmkit
-from mpmkit.contracts import ConstitutiveLaw, Motion, StateVariable, hookimpl, quantity
+from mpmkit.contracts import ConstitutiveLaw, Kinematics, StateVariable, hookimpl, quantity
 from mpmkit.errors import CaseError, GuardStop
 from mpmkit.registry import Registered, Registry, installed
 
@@ -29,9 +29,9 @@ class Hypoelastic(ConstitutiveLaw):
     bulk_modulus: float = quantity("Pa", "bulk modulus K", gt=0)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        state["mean_stress"] += dt * self.bulk_modulus * np.trace(motion.velocity_gradient, axis1=1, axis2=2)
+        state["mean_stress"] += dt * self.bulk_modulus * np.trace(kinematics.velocity_gradient, axis1=1, axis2=2)
         stress[:, :3] = state["mean_stress"][:, None]
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:

@@ -59,10 +59,10 @@ def test_a_modulus_stays_as_it_is_where_the_sound_falls():
     advance(simulation, 0.7)
     (group,) = simulation.particles.groups
     assert group.sound_speed < 0.5 * math.sqrt(2 * G * 0.3) / 0.1
-    motion = simulation.particles.motion(group)
+    kinematics = simulation.particles.kinematics(group)
     stress = np.zeros_like(simulation.particles.stress)
     stress[:, 4] = 188.91
-    energy = group.law.strain_energy(motion, group.state, stress) / motion.volume_ratio
+    energy = group.law.strain_energy(kinematics, group.state, stress) / kinematics.volume_ratio
     assert 188.91 / (188.91**2 / (2 * energy)) == pytest.approx(188.91 / 75772.0, rel=1e-3)  # 0.25 %
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import maxwell
 from .base import quantity
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
 from .scale import REST_SHEAR_RATE, Scale
 
 
@@ -41,10 +41,10 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         return maxwell.solve(self.flow_curve, trial, stiffness, REST_SHEAR_RATE)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        modulus = self._modulus(motion.density, motion.sound_speed)
-        maxwell.relax(motion, modulus, dt, stress, self.relaxed_stress)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        maxwell.relax(kinematics, modulus, dt, stress, self.relaxed_stress)
 
     def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
         """With G, which stays the same for the whole run, also where the sound speed follows the flow."""
@@ -81,10 +81,10 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         return found
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray:
-        modulus = self._modulus(motion.density, motion.sound_speed)
-        return maxwell.strain_energy(modulus, motion, stress)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        return maxwell.strain_energy(modulus, kinematics, stress)
 
     def _modulus(self, density: float, sound_speed: float | None) -> float:
         if self.shear_modulus is not None:

@@ -12,7 +12,7 @@ from pydantic import Field, PrivateAttr
 from ..kernels.tensors import shear_rate, viscous_stress
 from . import maxwell
 from .base import one_each
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
 from .scale import REST_SHEAR_RATE, Scale
 
 
@@ -42,15 +42,15 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         """Viscosity, Pa s, at shear rates ``(n,)``, 1/s, all of them at least ``REST_SHEAR_RATE``."""
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         if self.form == "relaxed":
-            modulus = self._modulus(motion.density, motion.sound_speed)
-            maxwell.relax(motion, modulus, dt, stress, self._relaxed)
+            modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+            maxwell.relax(kinematics, modulus, dt, stress, self._relaxed)
             return
-        rate = shear_rate(motion.velocity_gradient, REST_SHEAR_RATE)
+        rate = shear_rate(kinematics.velocity_gradient, REST_SHEAR_RATE)
         viscosity = one_each(self.apparent_viscosity(rate), rate, "apparent_viscosity")
-        viscous_stress(motion.velocity_gradient, viscosity, stress)
+        viscous_stress(kinematics.velocity_gradient, viscosity, stress)
 
     def largest_viscosity(self, largest_shear_rate: float) -> float:
         if self.form == "relaxed":
@@ -91,12 +91,12 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         )
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:
         if self.form == "explicit":
             return 0.0
-        modulus = self._modulus(motion.density, motion.sound_speed)
-        return maxwell.strain_energy(modulus, motion, stress)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        return maxwell.strain_energy(modulus, kinematics, stress)
 
     def _modulus(self, density: float, sound_speed: float | None) -> float:
         return maxwell.shear_modulus(self._shear_modulus, density, sound_speed)

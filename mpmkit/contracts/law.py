@@ -29,7 +29,7 @@ class StateVariable:
 
 
 @dataclass(frozen=True)
-class Motion:
+class Kinematics:
     """What a law is told of the particles that it governs. Tensors are 3 × 3 in every space.
 
     The components follow the axes of the grid; in two dimensions the third one is out of the plane
@@ -70,7 +70,7 @@ class ConstitutiveLaw(Plugin):
 
     @abstractmethod
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``.
 
@@ -95,13 +95,13 @@ class ConstitutiveLaw(Plugin):
             raise ValueError(f"law '{self.name}' has no equation of state and must override wave_speed")
         return sound_speed
 
-    def present_wave_speed(self, motion: Motion, state: Mapping[str, np.ndarray]) -> float:
+    def present_wave_speed(self, kinematics: Kinematics, state: Mapping[str, np.ndarray]) -> float:
         """Fastest wave in the present state, m/s, against the moving material; that of the unstrained one by
         default.
 
         A solid that stiffens as it is strained says so here; its steps then shorten with it.
         """
-        return self.wave_speed(motion.density, motion.sound_speed)
+        return self.wave_speed(kinematics.density, kinematics.sound_speed)
 
     def largest_viscosity(self, largest_shear_rate: float) -> float:
         """Largest viscosity, Pa s, between rest and a shear rate, for the viscous limit of the time step."""
@@ -116,7 +116,7 @@ class ConstitutiveLaw(Plugin):
         return []
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray | float:
         """Elastic energy of shape per initial volume, J/m³, ``(n,)``; zero for a viscous fluid."""
         return 0.0

@@ -21,7 +21,7 @@ import numpy as np
 
 from ..kernels.elastic import elastic_trial, shrink, stored
 from .base import one_each
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
 from .scale import Scale
 
 STIFFNESS = 0.05
@@ -136,7 +136,7 @@ def _too_late(
 
 
 def relax(
-    motion: Motion,
+    kinematics: Kinematics,
     modulus: float,
     dt: float,
     stress: np.ndarray,
@@ -144,14 +144,14 @@ def relax(
 ) -> None:
     """Advance ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
     trial = np.empty(len(stress))
-    elastic_trial(motion.velocity_gradient, dt, modulus, stress, trial)
+    elastic_trial(kinematics.velocity_gradient, dt, modulus, stress, trial)
     shrink(stress, trial, one_each(relaxed(trial, modulus * dt), trial, "relaxed_stress"))
 
 
-def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndarray:
+def strain_energy(modulus: float, kinematics: Kinematics, stress: np.ndarray) -> np.ndarray:
     """J s:s / (4 G), J/m³ of initial volume."""
     energy = np.empty(len(stress))
-    stored(stress, motion.volume_ratio, modulus, energy)
+    stored(stress, kinematics.volume_ratio, modulus, energy)
     return energy
 
 

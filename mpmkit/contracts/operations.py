@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-Measure = Literal["mass", "volume"]
+Weighting = Literal["mass", "volume"]
 
 
 class Operations(Protocol):
@@ -50,7 +50,7 @@ class Operations(Protocol):
     def update_stress(self, dt: float) -> None:
         """Deformation, volume ratio, pressure and stress of every particle."""
 
-    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+    def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
         """x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ, with ṽ the new nodal velocity at the particle
         and Δṽ what the step changed in it. Used by velocity updates.
 
@@ -58,10 +58,10 @@ class Operations(Protocol):
         diagonal D = Σ N (x_node - x̄)²; for velocity updates that say ``affine = True``.
         """
 
-    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+    def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
         """Average of a particle field over the grid, ``(n,)``: to the nodes and back to the particles."""
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+    def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
         """Average of a particle field around each node, Σ w N f / Σ w N: ``(n,)`` to nodes.
 
         The weight w is the mass or the volume; particles whose law has a pressure of its own have no part in

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..contracts import ConstitutiveLaw, Motion, Plugin, ShapeFunction
+from ..contracts import ConstitutiveLaw, Kinematics, Plugin, ShapeFunction
 from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import PluginFault
 from ..kernels.compile import CHUNK
@@ -64,7 +64,7 @@ class Fenced:
 
 def rehearse_law(
     law: ConstitutiveLaw,
-    motion: Motion,
+    kinematics: Kinematics,
     state: Mapping[str, np.ndarray],
     stress: np.ndarray,
     dt: float,
@@ -76,12 +76,12 @@ def rehearse_law(
         PluginFault: it wrote where it must not, or not as it must.
     """
     which = _sample(len(numbers))
-    given = {name: Fenced(a[which], READ) for name, a in vars(motion).items() if isinstance(a, np.ndarray)}
+    given = {name: Fenced(a[which], READ) for name, a in vars(kinematics).items() if isinstance(a, np.ndarray)}
     kept = {name: Fenced(array[which], WRITTEN) for name, array in state.items()}
     written = Fenced(stress[which], WRITTEN)
     rows = {name: array.rows for name, array in kept.items()}
     fenced: dict[str, Any] = {name: array.rows for name, array in given.items()}
-    rehearsed = replace(motion, **fenced)
+    rehearsed = replace(kinematics, **fenced)
     returned = law.update_stress(rehearsed, rows, dt, written.rows)
     if returned is not None:
         raise PluginFault(
@@ -139,7 +139,7 @@ def require_shape(plugin: Plugin, what: str, returned: Any, shape: tuple[int, ..
 
 
 def require_stress(
-    law: ConstitutiveLaw, motion: Motion, dt: float, stress: np.ndarray, numbers: np.ndarray
+    law: ConstitutiveLaw, kinematics: Kinematics, dt: float, stress: np.ndarray, numbers: np.ndarray
 ) -> None:
     """Raise PluginFault if a law gave a stress that is not finite, and the run does not diverge as it is.
 
@@ -147,10 +147,10 @@ def require_stress(
     """
     if _first_not_finite(stress) < 0:
         return
-    ratio = motion.volume_ratio
+    ratio = kinematics.volume_ratio
     sound = ratio.min() >= LEAST_RATIO and ratio.max() <= MOST_RATIO
-    if sound and np.abs(motion.velocity_gradient).max() * dt < 1:
-        require_finite(law, "a stress", stress, numbers, (motion.pressure,))
+    if sound and np.abs(kinematics.velocity_gradient).max() * dt < 1:
+        require_finite(law, "a stress", stress, numbers, (kinematics.pressure,))
 
 
 def require_finite(

@@ -19,7 +19,7 @@ def strain_energy(p: Particles) -> float:
     total = 0.0
     for group in p.groups:
         volume = p.initial_volume[group.part]
-        density = group.law.strain_energy(p.motion(group), group.state, p.stress[group.part])
+        density = group.law.strain_energy(p.kinematics(group), group.state, p.stress[group.part])
         if np.ndim(density):
             require_shape(group.law, "strain_energy", density, volume.shape)
             total += _integral(density, volume)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..case.model import Scheme
-from ..contracts.operations import Measure
+from ..contracts.operations import Weighting
 from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather
@@ -149,7 +149,7 @@ class SceneOperations:
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
 
-    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+    def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
         if not math.isfinite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
@@ -183,12 +183,12 @@ class SceneOperations:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
-        p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
+        p, kinematics, stress = self.particles, self.particles.kinematics(group), self.particles.stress[group.part]
         if self._rehearsing:
-            audit.rehearse_law(group.law, motion, group.state, stress, dt, p.number[group.part])
-        group.law.update_stress(motion, group.state, dt, stress)
+            audit.rehearse_law(group.law, kinematics, group.state, stress, dt, p.number[group.part])
+        group.law.update_stress(kinematics, group.state, dt, stress)
         if self._auditing:
-            audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
+            audit.require_stress(group.law, kinematics, dt, stress, p.number[group.part])
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
@@ -241,19 +241,19 @@ class SceneOperations:
 
     # --- Fields in general
 
-    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.averager.at_particles()
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
         self.window.average[:, 0] = nodal
         return self.averager.at_particles()
 
-    def _weights(self, name: Measure) -> np.ndarray:
+    def _weights(self, name: Weighting) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
         measure = p.mass if name == "mass" else p.volume

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
 from ..errors import PluginFault
 from ..kernels.sort import permute
 
@@ -115,10 +115,10 @@ class Particles:
             for array in group.state.values():
                 array[...] = array[local]
 
-    def motion(self, group: Group) -> Motion:
+    def kinematics(self, group: Group) -> Kinematics:
         """What the law of a group is told of its particles."""
         part, F = group.part, self.deformation_gradient
-        return Motion(
+        return Kinematics(
             velocity_gradient=self.velocity_gradient[part],
             volume_ratio=self.volume_ratio[part],
             pressure=self.pressure[part],
@@ -134,7 +134,7 @@ class Particles:
         Raises:
             PluginFault: the law gives none.
         """
-        speed = group.law.present_wave_speed(self.motion(group), group.state)
+        speed = group.law.present_wave_speed(self.kinematics(group), group.state)
         if not speed >= 0:
             raise PluginFault(group.law, f"has a wave speed of {speed} m/s; it must not be negative")
         return speed if speed > STIFFER * group.wave_speed else group.wave_speed

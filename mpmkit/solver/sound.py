@@ -84,7 +84,7 @@ def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> flo
     moving = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
     for group in particles.groups:
         part = group.part
-        stored = group.law.strain_energy(particles.motion(group), group.state, particles.stress[part])
+        stored = group.law.strain_energy(particles.kinematics(group), group.state, particles.stress[part])
         if group.law.uses_equation_of_state:
             stored = stored + group.compressive_energy(particles.volume_ratio[part])
         moving[part] += stored / group.density

@@ -26,7 +26,7 @@ ON_LAWS = (
     laws.batch_order,
     laws.swelling,
     law_promises.declared_state,
-    law_promises.leaves_the_motion_alone,
+    law_promises.leaves_the_kinematics_alone,
     law_promises.wave_speed,
     law_promises.largest_viscosity,
     law_promises.remarks,
@@ -124,4 +124,4 @@ class _Undamped(VelocityUpdate):
     api_version = 1
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=1.0)
+        ops.move_particles(dt, flip=1.0)

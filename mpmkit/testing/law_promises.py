@@ -44,18 +44,18 @@ def declared_state(subject: LawSubject) -> None:
         require_same(elsewhere.state[name], array[order], lambda *at, n=name: f"state '{n}' {same}")
 
 
-def leaves_the_motion_alone(subject: LawSubject) -> None:
+def leaves_the_kinematics_alone(subject: LawSubject) -> None:
     """The law reads the motion of the particles, and writes its stress and state alone."""
     specimens = subject.specimens(10)
     L = random_gradients(10)
     specimens.drive(L, 1e-3)
-    motion = specimens.motion(L)
+    kinematics = specimens.kinematics(L)
     names = ("velocity_gradient", "volume_ratio", "pressure", "deformation_gradient")
-    arrays = {name: array for name in names if (array := getattr(motion, name)) is not None}
+    arrays = {name: array for name in names if (array := getattr(kinematics, name)) is not None}
     before = {name: array.copy() for name, array in arrays.items()}
-    subject.law.update_stress(motion, specimens.state, 1e-3, specimens.voigt)
+    subject.law.update_stress(kinematics, specimens.state, 1e-3, specimens.voigt)
     for name, array in arrays.items():
-        require_same(array, before[name], lambda *at, name=name: f"motion.{name}, which it must not change,")
+        require_same(array, before[name], lambda *at, name=name: f"kinematics.{name}, which it must not change,")
 
 
 def wave_speed(subject: LawSubject) -> None:

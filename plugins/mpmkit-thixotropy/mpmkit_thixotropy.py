@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mpmkit.contracts import ConstitutiveLaw, Motion, StateVariable, hookimpl, quantity
+from mpmkit.contracts import ConstitutiveLaw, Kinematics, StateVariable, hookimpl, quantity
 
 STIFFNESS = 0.05
 """Least G over ρ c²: raises the wave speed, and with it the number of steps, by 3 %."""
@@ -33,9 +33,9 @@ class Thixotropic(ConstitutiveLaw):
     breakdown: float = quantity("1", "α, the inverse of the strain that breaks the structure", ge=0)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        L, G = motion.velocity_gradient, self.shear_modulus(motion.density, motion.sound_speed)
+        L, G = kinematics.velocity_gradient, self.shear_modulus(kinematics.density, kinematics.sound_speed)
         structure = state["structure"]
         s = turned(tensor(stress), L, dt) + 2 * G * dt * deviator(L)
         trial = np.sqrt(np.einsum("pij,pij->p", s, s) / 2)
@@ -57,10 +57,10 @@ class Thixotropic(ConstitutiveLaw):
         return math.sqrt(c**2 + 4 * G / (3 * density))
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray:
-        s, G = tensor(stress), self.shear_modulus(motion.density, motion.sound_speed)
-        return motion.volume_ratio * np.einsum("pij,pij->p", s, s) / (4 * G)
+        s, G = tensor(stress), self.shear_modulus(kinematics.density, kinematics.sound_speed)
+        return kinematics.volume_ratio * np.einsum("pij,pij->p", s, s) / (4 * G)
 
 
 def tensor(voigt: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ LAW_MUTANTS = [
     (law_mutants.KnowsTheOthers, "batch order"),
     (law_mutants.HiddenState, "declared state"),
     (law_mutants.UndeclaredState, "declared state"),
-    (law_mutants.ChangesTheMotion, "leaves the motion alone"),
+    (law_mutants.ChangesTheKinematics, "leaves the kinematics alone"),
     (law_mutants.RightForLeft, "energy gives the stress"),
     (law_mutants.RightForLeft, "frame indifference"),
     (law_mutants.HalfTheEnergy, "energy gives the stress"),

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from mpmkit_thixotropy import Thixotropic
 
-from mpmkit.contracts import Motion
+from mpmkit.contracts import Kinematics
 from mpmkit.testing import law_tests
 
 TAU0, MU, T, ALPHA = 50.0, 20.0, 100.0, 0.5
@@ -24,8 +24,8 @@ def drive(rate, duration, steps, structure=0.0, stress=None):
     state = {"structure": np.full(1, structure)}
     stress = np.zeros((1, 6)) if stress is None else stress
     for _ in range(steps):
-        motion = Motion(gradient, np.ones(1), np.zeros(1), 2400.0, sound_speed=40.0)
-        LAW.update_stress(motion, state, duration / steps, stress)
+        kinematics = Kinematics(gradient, np.ones(1), np.zeros(1), 2400.0, sound_speed=40.0)
+        LAW.update_stress(kinematics, state, duration / steps, stress)
     return state["structure"][0], stress
 
 

@@ -34,7 +34,7 @@ class APIC(VelocityUpdate):
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
         rate = 0.05 / ops.acoustic_time if self.rate is None else self.rate
-        ops.advance(dt, flip=math.exp(-rate * dt), affine=True)
+        ops.move_particles(dt, flip=math.exp(-rate * dt), affine=True)
 
 
 @hookimpl

@@ -21,7 +21,7 @@ class Blend(VelocityUpdate):
     )
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=math.exp(-self.rate * dt))
+        ops.move_particles(dt, flip=math.exp(-self.rate * dt))
 
 
 @hookimpl

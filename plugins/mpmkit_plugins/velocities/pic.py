@@ -14,7 +14,7 @@ class PIC(VelocityUpdate):
         return ["velocity 'pic' damps like a viscosity of Δx²/Δt, more the smaller the step; 'apic' does not"]
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=0.0)
+        ops.move_particles(dt, flip=0.0)
 
 
 @hookimpl
