@@ -194,6 +194,7 @@ def _check_wave_speed(field: str, material: Material, case: Case) -> None:
     law, sound_speed = material.constitutive_law, case.sound_speed(material)
     with blaming_plugins([("law", law)]):
         try:
+            law = law.in_scene(material.density, sound_speed, case.scale)
             given = law.wave_speed(material.density, sound_speed)
         except OverflowError:
             given = math.inf

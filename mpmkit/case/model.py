@@ -14,6 +14,7 @@ from pydantic import Discriminator, Field, Tag
 
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
+from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
@@ -182,9 +183,25 @@ class Case(Model):
 
     @cached_property
     def height(self) -> float:
-        """Vertical extent h of all bodies together, m."""
+        """Extent h of all bodies together along gravity, m."""
         bounds = [body.shape.bounds(self.space_) for body in self.bodies]
-        return float(max(upper[-1] for _, upper in bounds) - min(lower[-1] for lower, _ in bounds))
+        ends = np.array([np.sort(self._downwards * np.array(b), axis=0).sum(axis=1) for b in bounds])
+        return float(ends[:, 1].max() - ends[:, 0].min())
+
+    @cached_property
+    def _downwards(self) -> np.ndarray:
+        """Unit vector of gravity, without what acts along a periodic axis, which has no height; down the last
+        axis where nothing is left."""
+        along = np.array([self.grid.faces.get(f"{axis}_min") == "periodic" for axis in self.space_.axes])
+        vector = np.where(along, 0.0, self.gravity_vector)
+        if not vector.any():
+            vector[-1] = -1.0
+        return vector / np.linalg.norm(vector)
+
+    @cached_property
+    def scale(self) -> Scale:
+        """How large the scene is, and what drives it."""
+        return Scale(self.largest_energy, self.height)
 
     @cached_property
     def largest_energy(self) -> float:

@@ -10,8 +10,8 @@ import numpy as np
 from . import maxwell
 from .base import one_each
 from .elastoviscoplastic import ElastoviscoplasticLaw
-from .generalised_newtonian import REST_SHEAR_RATE
 from .law import Kinematics, initial_state
+from .scale import REST_SHEAR_RATE
 
 State = Mapping[str, np.ndarray]
 """The state variables of some particles by name, each ``(n, *shape)``."""
@@ -60,4 +60,5 @@ class ElastoviscoplasticLawWithState(ElastoviscoplasticLaw):
             self.update_state(state, (trial - tau) / stiffness, dt)
             return tau
 
-        maxwell.relax(kinematics, self._modulus(kinematics), dt, stress, flow)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        maxwell.relax(kinematics, modulus, dt, stress, flow)

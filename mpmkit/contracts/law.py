@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import PluginFault
 from .base import Plugin
+from .scale import Scale
 
 LEAST_RATIO, MOST_RATIO = 0.1, 10.0
 """Volume ratios between which a run is sound, and which a law must bear. At a Mach number of 0.1 that of a
@@ -126,11 +127,31 @@ class ConstitutiveLaw(Plugin):
         On entry ``stress`` holds what the law wrote last, in the axes of then; it is zero at the beginning.
         """
 
+    def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
+        """The law with its open choices made for a scene, once, at the start; as it is by default.
+
+        A run uses what this returns: a law whose elastic modulus is not given chooses it here.
+
+        Args:
+            density: initial density, kg/m³.
+            sound_speed: of the equation of state at the start, m/s; None for a law that has its own pressure.
+            scale: how large the scene is, and what drives it.
+        """
+        return self
+
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
-        """Fastest wave, m/s, for the acoustic limit of the time step."""
+        """Fastest wave of the unstrained material, m/s, for the acoustic limit of the time step."""
         if sound_speed is None:
             raise ValueError(f"law '{self.name}' has no equation of state and must override wave_speed")
         return sound_speed
+
+    def present_wave_speed(self, kinematics: Kinematics, state: Mapping[str, np.ndarray]) -> float:
+        """Fastest wave in the present state, m/s, against the moving material; that of the unstrained one by
+        default.
+
+        A solid that stiffens as it is strained says so here; its steps then shorten with it.
+        """
+        return self.wave_speed(kinematics.density, kinematics.sound_speed)
 
     def largest_viscosity(self, largest_shear_rate: float) -> float:
         """Largest viscosity, Pa s, between rest and a shear rate, for the viscous limit of the time step."""
@@ -146,6 +167,10 @@ class ConstitutiveLaw(Plugin):
         None for a law without a yield stress. Frames and histories show by it what has yielded.
         """
         return None
+
+    def warnings(self, density: float, sound_speed: float | None, scale: Scale, until: float) -> list[str]:
+        """What should not be trusted of this material in a scene that runs for ``until`` s: sentences."""
+        return []
 
     def strain_energy(
         self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray

@@ -21,11 +21,26 @@ import numpy as np
 
 from ..kernels.elastic import elastic_trial, shrink, stored
 from .base import one_each
-from .law import Kinematics
+from .law import ConstitutiveLaw, Kinematics
+from .scale import Scale
 
 STIFFNESS = 0.05
-"""G over ρ c² where a case does not give G: as stiff as costs nothing, since it raises the wave speed, and
-with it the number of steps, by 3 %. A yield stress is then reached at a strain of τ0 / (0.05 ρ c²)."""
+"""Least G over ρ c² where a case does not give G: it raises the wave speed, and with it the number of steps,
+by 3 %."""
+YIELD_STRAIN = 0.003
+"""Largest τ0/G where a case does not give G: a body that yields later wobbles like a jelly before."""
+FLOW_STRAIN = 0.01
+"""Largest elastic strain, by the viscous stress that the scene can drive, where a case does not give G.
+
+The relaxation time μ/G is then at most a hundredth of the time that the flow takes: √(h/g), or μ/(ρ g h)
+where the flow creeps. As the stress is at most ρ g h, G needs to be no more than 100 ρ g h, which is ρ c²/2
+for a sound speed of 10 √(2 g h) and costs 29 % more steps than the sound alone."""
+SOFT = 0.02
+"""Elastic strain at yield above which results are not to be trusted."""
+LATE = 0.02
+"""Part of a run above which the time μ/G, in which a viscosity comes to be felt, is not to be trusted."""
+DEAR = 1.05
+"""Times the steps above which a remark says what the spring costs."""
 
 CLOSE = 1e-13
 """Part of τ* by which f(γ̇) + G Δt γ̇ may miss it."""
@@ -34,17 +49,94 @@ Curve = Callable[..., np.ndarray]
 """Shear stress, Pa, of steady shear at rates ``(m,)``, 1/s; and of the state, where a law has one."""
 
 
-def shear_modulus(given: float | None, density: float, sound_speed: float | None) -> float:
-    """G, Pa: the given one, or else ``STIFFNESS`` of the bulk modulus ρ c²."""
+def shear_modulus(
+    given: float | None,
+    density: float,
+    sound_speed: float | None,
+    yield_stress: float = 0.0,
+    flow_stress: float = 0.0,
+) -> float:
+    """G, Pa: the given one, or else the largest of 0.05 ρ c², τ0/0.003, and the flow stress over 0.01.
+
+    Args:
+        given: G of the case, Pa, or None.
+        density: ρ, kg/m³.
+        sound_speed: c, m/s.
+        yield_stress: τ0, Pa.
+        flow_stress: viscous stress that the scene can drive, Pa.
+    """
     if given is not None:
         return given
     assert sound_speed is not None
-    return STIFFNESS * density * sound_speed**2
+    return max(STIFFNESS * density * sound_speed**2, yield_stress / YIELD_STRAIN, flow_stress / FLOW_STRAIN)
 
 
 def wave_speed(modulus: float, density: float, sound_speed: float) -> float:
     """√(c² + 4 G / 3ρ), m/s."""
     return math.sqrt(sound_speed**2 + 4 * modulus / (3 * density))
+
+
+def cost(law: ConstitutiveLaw, density: float, sound_speed: float | None) -> str:
+    """End of a sentence that says what the spring costs; nothing where that is little."""
+    times = law.wave_speed(density, sound_speed) / sound_speed if sound_speed else 1.0
+    return f", which makes the steps {times:.2g} times as many" if times > DEAR else ""
+
+
+def warnings_of_delay(
+    law: ConstitutiveLaw,
+    modulus: float | None,
+    density: float,
+    sound_speed: float | None,
+    scale: Scale,
+    viscous_stress: Curve,
+    until: float,
+) -> list[str]:
+    """Sentences where a viscosity μ is felt too late: after μ/G of the spring, μ/(ρ c²) of the sound.
+
+    Args:
+        law: whose name they have.
+        modulus: G, Pa; None without a spring.
+        density: ρ, kg/m³.
+        sound_speed: c, m/s.
+        scale: of the scene, which says how fast it may flow, and with it what μ is.
+        viscous_stress: rising stress beyond the yield stress, Pa, at shear rates ``(m,)``, 1/s.
+        until: time of the run, s.
+    """
+    rate, stress = scale.flow(viscous_stress, density)
+    if not stress > 0 or sound_speed is None:
+        return []
+    viscosity, allowed = stress / rate, LATE * until
+    spring, sound = viscosity / (modulus or math.inf), viscosity / (density * sound_speed**2)
+    share = f"{100 * LATE:g} %"
+    enough = f"a sound_speed of {math.sqrt(viscosity / allowed / density):.3g} m/s makes it {share}"
+    found = []
+    if spring > allowed:
+        given = "shear_modulus" in type(law).model_fields
+        stiffer = (
+            f"a shear_modulus of {viscosity / allowed:.2g} Pa makes it {share}"
+            if given
+            else "a larger sound_speed makes it less"
+        )
+        found.append(_too_late(law, viscosity, "G", spring, until, "a jelly", stiffer))
+    if sound > allowed:
+        found.append(_too_late(law, viscosity, "(rho c²)", sound, until, "a sponge", enough))
+    return found
+
+
+def _too_late(
+    law: ConstitutiveLaw,
+    viscosity: float,
+    stiffness: str,
+    delay: float,
+    until: float,
+    instead: str,
+    remedy: str,
+) -> str:
+    return (
+        f"law '{law.name}', with {viscosity:.3g} Pa s here, flows only after mu/{stiffness} = {delay:.2g} s, "
+        f"{100 * delay / until:.2g} % of until; up to a few times that it is {instead}, not a liquid, and "
+        f"its motion is not to be trusted; {remedy}"
+    )
 
 
 def relax(

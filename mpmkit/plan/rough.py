@@ -22,8 +22,9 @@ def rough_seconds(case: Case, threads: int = 1) -> float:
     particles that are split, are left out.
     """
     groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
+    materials = [(group, group.wave_speed) for group in groups]
     fastest = max(body.largest_speed for body in case.bodies)
-    step, _ = choose_step(case.scheme, limits(groups, case.grid.cell_size, fastest))
+    step, _ = choose_step(case.scheme, limits(materials, case.grid.cell_size, fastest, case.scale.rate))
     particles = expected_particles(case)
     if not step > 0:
         return math.inf

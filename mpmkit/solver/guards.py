@@ -83,7 +83,7 @@ class Guards:
                 self._stop_of_energy(self.balance)
 
     def accept_changes(self) -> None:
-        """To be called where splitting, or a sound speed that follows the flow, has changed energies."""
+        """To be called where splitting has changed energies."""
         if self.balance is not None:
             self.balance.accept(self._scene.particles)
 

@@ -8,10 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
+from ..contracts.scale import Scale
 from ..errors import PluginFault
 from ..kernels.sort import permute
 from ..registry.audit import require_number, require_sentences
 from .stateful import State, plain_state, restore_plain
+
+STIFFER = 1.05
+"""Wave speed over that of the unstrained material from which on the step follows it."""
 
 
 @dataclass
@@ -30,7 +34,7 @@ class Group:
 
     @property
     def wave_speed(self) -> float:
-        """Fastest wave of the law, m/s.
+        """Fastest wave of the unstrained material, m/s.
 
         Raises:
             PluginFault: it is no number, or not positive.
@@ -46,6 +50,11 @@ class Group:
         """What the law has to say of itself in this material."""
         said = self.law.remarks(self.density, self.sound_speed)
         return require_sentences(self.law, "remarks", said)
+
+    def warnings(self, scale: Scale, until: float) -> list[str]:
+        """What should not be trusted of this material in a scene that runs for ``until`` s."""
+        said = self.law.warnings(self.density, self.sound_speed, scale, until)
+        return require_sentences(self.law, "warnings", said)
 
     def pressure(self, volume_ratio: np.ndarray) -> np.ndarray:
         """Pressure of the equation of state, Pa; for a law that uses one."""
@@ -155,6 +164,19 @@ class Particles:
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
         )
+
+    def wave_speed(self, group: Group) -> float:
+        """Fastest wave in the present state of a group, m/s; that of the unstrained one where it is hardly
+        slower, so that steps do not change all the time.
+
+        Raises:
+            PluginFault: the law gives none.
+        """
+        given = group.law.present_wave_speed(self.kinematics(group), group.state)
+        speed = require_number(group.law, "present_wave_speed", given)
+        if not speed >= 0:
+            raise PluginFault(group.law, f"has a wave speed of {speed} m/s; it must not be negative")
+        return speed if speed > STIFFER * group.wave_speed else group.wave_speed
 
     @property
     def nbytes(self) -> int:

@@ -87,12 +87,13 @@ def tracks_deformation(case: Case) -> bool:
 
 def material_group(case: Case, material: Material, part: slice) -> Group:
     """The particles ``part`` of a material, in the state in which a run begins."""
-    law, count = material.constitutive_law, part.stop - part.start
+    count, speed = part.stop - part.start, case.sound_speed(material)
+    law = material.constitutive_law.in_scene(material.density, speed, case.scale)
     return Group(
         law=law,
         equation_of_state=material.equation_of_state,
         density=material.density,
-        sound_speed=case.sound_speed(material),
+        sound_speed=speed,
         mach=material.sound_speed.mach if isinstance(material.sound_speed, SoundSpeedMach) else None,
         part=part,
         state=initial_state(law, count),

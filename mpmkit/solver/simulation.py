@@ -27,6 +27,8 @@ from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
 """Steps between two looks at the limits of the time step; in as many, no flow changes its speed much."""
+IMPACT_INTERVAL = 5
+"""The same where there is a solid, which an impact stiffens within a dozen steps."""
 
 
 class Simulation:
@@ -74,7 +76,8 @@ class Simulation:
         self._prepared = 0
         """The step, by the number of those done before it, for which ``prepare`` has looked last."""
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
-        self._follows_flow = any(group.mach is not None for group in self.particles.groups)
+        fluid = all(group.law.uses_equation_of_state for group in self.particles.groups)
+        self._interval = CONTROL_INTERVAL if fluid else IMPACT_INTERVAL
         self.guards = Guards(self)
         self.choose_time_step()
 
@@ -103,17 +106,17 @@ class Simulation:
         return blaming_plugins(self._plugins, lambda: (self.steps, self.time))
 
     def choose_time_step(self) -> None:
-        """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
+        """Recompute the limits, and with them the step."""
         with self.blaming():
             self._choose_time_step()
 
     def _choose_time_step(self) -> None:
         p = self.particles
-        follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
         mass, doubled, square = kinetics(p.mass, p.velocity)
         speed = math.sqrt(square)
         self.mach_number = mach_number(p, speed)
-        self.limits = limits(p.groups, self.grid.cell_size, speed)
+        waves = [(group, p.wave_speed(group)) for group in p.groups]
+        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = math.sqrt(doubled / mass)
@@ -129,14 +132,19 @@ class Simulation:
             if group.mach is not None:
                 said.append(
                     f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
-                    "a modulus that is made of it follows as well"
+                    "an elastic modulus stays as it is"
                 )
         return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
-        """What the user should know of the step that was chosen."""
+        """What the user should know of the materials, and of the step that was chosen."""
         with self.blaming():
-            return warnings(self.case.scheme, self.limits, self.time_step)
+            of_materials = [
+                sentence
+                for group in self.particles.groups
+                for sentence in group.warnings(self.case.scale, self.case.until)
+            ]
+            return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def prepare(self) -> None:
         """Every few steps, look at the guards, split, and choose the step; ``advance`` begins with it.
@@ -147,13 +155,13 @@ class Simulation:
             GuardStop: the run is beyond saving, see ``guards``.
         """
         self.guards.begin()
-        if self.steps % CONTROL_INTERVAL == 0 and self.steps > self._prepared:
+        if self.steps % self._interval == 0 and self.steps > self._prepared:
             self._prepared = self.steps
             self.check()
-            changed = self.case.scheme.splitting and self._split()
-            self.choose_time_step()
-            if changed or self._follows_flow:
+            if self.case.scheme.splitting and self._split():
                 self.guards.accept_changes()
+            self._follow_flow()
+            self.choose_time_step()
 
     def advance(self, at_most: float = np.inf) -> float:
         """One step, no longer than ``at_most`` seconds; returns its length.
@@ -180,6 +188,11 @@ class Simulation:
         self.steps += 1
         self.particle_steps += len(self.particles)
         return dt
+
+    def _follow_flow(self) -> None:
+        """Recompute the sound speeds that are to follow the flow."""
+        gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
+        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
 
     def _split(self) -> bool:
         """Split particles whose boxes are too long; whether there were any."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ..case.model import Scheme
@@ -13,6 +14,9 @@ from .particles import Group
 
 VISCOUS_NUMBER = 0.375
 """Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
+
+FROM_REST = 0.05
+"""Part of the scene's own rate that its flow comes to from rest until the next look at the limits."""
 
 
 @dataclass(frozen=True)
@@ -27,24 +31,27 @@ class Limits:
         return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
 
 
-def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limits:
+def limits(
+    materials: Iterable[tuple[Group, float]], cell_size: float, largest_speed: float, rate: float
+) -> Limits:
     """Critical steps of a scene.
 
-    acoustic: dx / c, with the law's fastest wave (eq. 5 of Ferreira et al.);
+    acoustic: dx / c, with the law's fastest wave in its present state (eq. 5 of Ferreira et al.);
     viscous: 0.375 rho dx² / mu, with the law's largest viscosity;
     advective: dx / |v|.
 
     Args:
-        groups: the materials.
+        materials: each with the speed of its fastest wave, m/s.
         cell_size: dx, m.
         largest_speed: largest particle speed, m/s.
+        rate: √e/h of the scene, 1/s, see ``contracts.scale``.
     """
     # No strain rate that the grid can resolve exceeds a jump of the largest speed over one cell; a scene
-    # at rest will move, so that at least 1 /s is allowed for.
-    largest_rate = max(2 * largest_speed / cell_size, 1.0)
+    # at rest will move, so that a part of the rate at which it could fall is allowed for.
+    largest_rate = max(2 * largest_speed / cell_size, FROM_REST * rate)
     acoustic = viscous = math.inf
-    for group in groups:
-        acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
+    for group, wave_speed in materials:
+        acoustic = min(acoustic, _quotient(cell_size, wave_speed))
         given = group.law.largest_viscosity(largest_rate)
         viscosity = require_number(group.law, "largest_viscosity", given)
         if not viscosity >= 0:

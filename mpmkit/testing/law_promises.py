@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contracts.scale import Scale
 from .law_subject import LawSubject
 from .specimens import plane, random_gradients, simple_shear
 from .violation import Violation, require, require_all, require_same
@@ -134,7 +135,13 @@ def largest_viscosity(subject: LawSubject) -> None:
 
 
 def remarks(subject: LawSubject) -> None:
-    """Sentences that name the law, without a number that is none."""
-    for sentence in subject.law.remarks(subject.density, subject.given_sound_speed):
-        require(subject.law.name in sentence, f"a remark does not name the law: {sentence!r}")
-        require("nan" not in sentence.split(), f"a remark has a number that is none: {sentence!r}")
+    """Sentences that name the law, without a number that is none; and so the warnings of a scene of 1 m in
+    which 1 J/kg moves for 1 ms."""
+    given = subject.density, subject.given_sound_speed
+    for what, sentences in (
+        ("remark", subject.law.remarks(*given)),
+        ("warning", subject.law.warnings(*given, Scale(energy=1.0, length=1.0), 1e-3)),
+    ):
+        for sentence in sentences:
+            require(subject.law.name in sentence, f"a {what} does not name the law: {sentence!r}")
+            require("nan" not in sentence.split(), f"a {what} has a number that is none: {sentence!r}")
