@@ -58,10 +58,12 @@ def expected_bytes(case: Case, particles: float) -> int:
 def checkpoint_bytes(case: Case, particles: float) -> int:
     """Memory that is held for a moment while a checkpoint is written.
 
-    It is a copy of the state of all particles, and of the rows of the history that are kept.
+    It is a copy of the state of all particles, of their last weights, and of the rows of the history that
+    are kept.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) / 2
-    return int(COPY * particles * DOUBLE * (_state_doubles(case) + kept))
+    weights = case.space_.dim * case.scheme.shape.support
+    return int(COPY * particles * DOUBLE * (_state_doubles(case) + weights + kept))
 
 
 def bytes_per_particle(case: Case) -> int:
