@@ -566,3 +566,11 @@ def test_what_a_plugin_changes_of_the_process_is_undone(distribution, tmp_path, 
     assert not logger.disabled
     assert logger.isEnabledFor(logging.WARNING)
     assert "64 particles" in (tmp_path / "here" / "run.log").read_text(encoding="utf-8")
+
+
+def test_a_problem_of_one_plugin_is_not_told_of_another_with_a_similar_name(distribution):
+    source = LAW.replace('"slurry"', '"slurry-evp"').replace("api_version = 2", "api_version = 9")
+    distribution("old-pack", slurry_evp=source)
+    registry = discover()
+    assert len(registry.why_not("law", "slurry-evp")) == 1
+    assert registry.why_not("law", "slurry") == []
