@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from . import options
-from .printing import echo_json
+from .printing import echo, echo_json
 
 SECONDS = 5.0
 """For how long a scene is timed unless told."""
@@ -29,7 +29,7 @@ def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_jso
         timing = time_scene(SCENES[name], threads, seconds)
         timings.append(timing.as_dict())
         if not as_json:
-            click.echo(_table(SCENES[name].description, timings[-1]))
+            echo(_table(SCENES[name].description, timings[-1]))
     if as_json:
         echo_json(timings)
 

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .printing import echo
+
 
 @click.command("chart")
 @click.argument("study", type=click.Path())
@@ -46,8 +48,8 @@ def command(study: str, variable: str, reference: str, cost: str, out: str | Non
     found = chart(dataset, variable, reference, cost)
     path = Path(out) if out is not None else Path(study) / "chart.png"
     draw(found, str(dataset.attrs["title"]), path)
-    click.echo(f"| Pareto's front | {cost} | error of {variable} against {found.against} |")
-    click.echo("|---|---|---|")
+    echo(f"| Pareto's front | {cost} | error of {variable} against {found.against} |")
+    echo("|---|---|---|")
     for point in found.front:
-        click.echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
-    click.echo(f"\nof {len(found.points)} members; picture in {path}")
+        echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
+    echo(f"\nof {len(found.points)} members; picture in {path}")

@@ -27,6 +27,7 @@ from . import (
     stability,
     study,
 )
+from .printing import results_alone
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
@@ -56,6 +57,9 @@ for module in (
     schema,
 ):
     commands.add_command(module.command)
+for command in commands.commands.values():
+    assert command.callback is not None
+    command.callback = results_alone()(command.callback)
 for command in (commands, *commands.commands.values()):
     command.params.append(options.no_plugins)
 

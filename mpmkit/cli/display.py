@@ -10,7 +10,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
 from numba.core import event
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
@@ -19,6 +18,7 @@ from rich.table import Column
 from ..output.log import RECORD
 from ..output.summary import state_at_end
 from .duration import duration
+from .printing import echo
 
 if TYPE_CHECKING:
     from ..running import runner
@@ -153,5 +153,5 @@ def show_summary(directory: Path) -> None:
         figure = "–" if value is None else f"{value * scale:,.{digits}f}{unit}"
         if key == "final_spread" and (state := state_at_end(summary)) is not None:
             figure += f", {state}"
-        click.echo(f"{label:<{width}}  {figure}")
-    click.echo(f"results in {directory}")
+        echo(f"{label:<{width}}  {figure}")
+    echo(f"results in {directory}")

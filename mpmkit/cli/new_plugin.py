@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .printing import echo
+
 
 @click.command("new-plugin")
 @click.argument("name")
@@ -21,4 +23,4 @@ def command(name: str, kind: str, out: str | None) -> None:
     from ..registry.scaffold import new_plugin
 
     directory = new_plugin(name, kind, None if out is None else Path(out))
-    click.echo(f"wrote {directory}; next: cd '{directory}' && pip install -e '.[test]' && pytest")
+    echo(f"wrote {directory}; next: cd '{directory}' && pip install -e '.[test]' && pytest")

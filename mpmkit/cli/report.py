@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .printing import echo
+
 
 @click.command("report")
 @click.argument("directory", type=click.Path())
@@ -21,4 +23,4 @@ def command(directory: str) -> None:
     except Exception as error:  # a file of the run that someone has changed or cut off
         raise CaseError(f"the pictures of '{directory}' cannot be drawn: {reason(error)}") from None
     for path in written:
-        click.echo(str(path))
+        echo(str(path))

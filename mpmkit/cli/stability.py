@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from . import options
-from .printing import echo_json
+from .printing import echo, echo_json
 
 
 def _names(kind: str):
@@ -66,13 +66,13 @@ def command(
         finite = [{k: None if v == math.inf else v for k, v in row.items()} for row in rows]
         echo_json(finite)
     else:
-        click.echo(_table(list(chosen), rows))
+        echo(_table(list(chosen), rows))
     from ..stability.figure import draw
 
     directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
     path = draw(rows, list(chosen), str(data["name"]), directory)
     if not as_json:
-        click.echo(f"map in {path}")
+        echo(f"map in {path}")
 
 
 def _stable(row: dict) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import options
+from .printing import echo
 
 if TYPE_CHECKING:
     from ..study import Member, Study
@@ -76,8 +77,8 @@ def run_study(
             finally:
                 store.write(collect(study, members, store))
     if not quiet:
-        click.echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
-        click.echo(f"results in {store.path}")
+        echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
+        echo(f"results in {store.path}")
 
 
 def _progress(study: Study, members: list[Member], store: Store, at_once: int, threads: int) -> StudyProgress:

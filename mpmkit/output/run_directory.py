@@ -10,11 +10,13 @@ from ..errors import CaseError
 from .atomic import cannot_write
 from .checkpoints import Checkpoints
 from .copies import Copies
-from .frames import LIST_NAME
+from .frames import LIST_NAME, frame_files
 from .lock import LOCK_NAME, alone_in
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
+PICTURES = ("outline", "spread_and_height", "energies")
+"""Names of the pictures of a report, without their ending."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
 
@@ -127,11 +129,13 @@ class RunDirectory:
     def _clear(self) -> None:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
         written = [self.history, self.summary, *self.path.glob(PARTIAL)]
-        for directory, pattern in ((self.frames, "frame_*.vtu"), (self.report, "*.png")):
+        pictures = [self.report / f"{name}.png" for name in PICTURES]
+        frames = [*frame_files(self.frames), self.frames / LIST_NAME]
+        for directory, files in ((self.frames, frames), (self.report, pictures)):
             if directory.is_symlink():
                 written.append(directory)
             else:
-                written += [*directory.glob(pattern), *directory.glob(PARTIAL), directory / LIST_NAME]
+                written += [*files, *directory.glob(PARTIAL)]
         for path in (*written, self.case, self.log):
             path.unlink(missing_ok=True)
         Checkpoints(self.checkpoints).remove()

@@ -13,6 +13,7 @@ from pathlib import Path
 from ..contracts import KINDS, Plugin
 from ..errors import PluginFault, PluginStop, reason
 from .discovery import installed
+from .surroundings import settings_kept
 
 Used = Sequence[tuple[str, Plugin | type[Plugin]]]
 """Plug-ins, or their classes, each with its kind."""
@@ -36,24 +37,27 @@ def blaming_plugins(
     Raises:
         PluginStop: says which plug-in raised what, and where; the exception itself is its cause.
     """
-    try:
-        yield
-    except (KeyboardInterrupt, PluginStop):
-        raise
-    except PluginFault as fault:
-        plugin = fault.plugin
-        if plugin is None:
-            culprit = _culprit(fault, plugins, called=True)
-            if culprit is None:  # a program that uses the framework called it, and no plug-in did
-                raise TypeError(str(fault)) from fault
-            plugin = culprit[0]
-        raise _stop(f"{named(plugin)} {fault}", when, fault.particle) from fault
-    except BaseException as error:
-        culprit = _culprit(error, plugins)
-        if culprit is None:  # a fault of the framework, or of the user: not to be mistaken for a stranger's
+    with settings_kept():
+        try:
+            yield
+        except (KeyboardInterrupt, PluginStop):
             raise
-        plugin, where = culprit
-        raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", when) from error
+        except PluginFault as fault:
+            plugin = fault.plugin
+            if plugin is None:
+                culprit = _culprit(fault, plugins, called=True)
+                if culprit is None:  # a program that uses the framework called it, and no plug-in did
+                    raise TypeError(str(fault)) from fault
+                plugin = culprit[0]
+            raise _stop(f"{named(plugin)} {fault}", when, fault.particle) from fault
+        except BaseException as error:
+            culprit = _culprit(error, plugins)
+            if (
+                culprit is None
+            ):  # a fault of the framework, or of the user: not to be mistaken for a stranger's
+                raise
+            plugin, where = culprit
+            raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", when) from error
 
 
 def named(plugin: object) -> str:
