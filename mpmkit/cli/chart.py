@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH, refuse_existing
 from .printing import echo
 
 
 @click.command("chart")
-@click.argument("study", type=click.Path())
+@click.argument("study", type=PATH)
 @click.option(
     "--variable", default="spread_diameter", show_default=True, help="History or figure to judge by."
 )
@@ -18,30 +19,30 @@ from .printing import echo
     "--reference",
     default="finest",
     show_default=True,
+    type=PATH,
     metavar="FILE|NUMBER|finest",
     help="What the error is against: a CSV file, an exact value, or the finest member.",
 )
 @click.option(
     "--cost", default="wall_seconds", show_default=True, help="What the members are to cost least of."
 )
-@click.option(
-    "--out", type=click.Path(), metavar="FILE", help="The picture; chart.png of the study unless told."
-)
-def command(study: str, variable: str, reference: str, cost: str, out: str | None) -> None:
+@click.option("--out", type=PATH, metavar="FILE", help="The picture; chart.png of the study unless told.")
+@click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")
+def command(study: str, variable: str, reference: str, cost: str, out: str | None, overwrite: bool) -> None:
     """Chart error against cost over the members of STUDY, a study's directory, and name Pareto's front."""
-    import xarray
-
     from ..errors import CaseError
+    from ..output.netcdf import read_dataset
     from ..study.chart import chart
     from ..study.chart_figure import draw
 
+    if out is not None:  # the chart.png of a study is drawn anew by every chart
+        refuse_existing(Path(out), overwrite)
     results = Path(study) / "results.nc"
     try:
-        with xarray.open_dataset(results) as dataset:
-            dataset.load()
+        dataset = read_dataset(results)
         if "fate" not in dataset:
             raise ValueError
-    except (OSError, ValueError):
+    except (OSError, RuntimeError, ValueError):
         raise CaseError(
             f"'{study}' must be the directory of a study that was run; there is no {results} of one"
         ) from None

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import sys
 import traceback
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any
 
 import click
 
@@ -29,14 +30,46 @@ from . import (
 )
 from .printing import results_alone
 
+PIPE_CLOSED = 141
+"""What a shell says of a command that SIGPIPE ended."""
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
+
+class PipeClosed(Exception):
+    """Nobody reads any more what is printed, as after ``| head``."""
+
+
+class _Commands(click.Group):
+    """A group that leaves a closed pipe to ``execute``; click itself would end with status 1."""
+
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:  # here a help is printed
+        with _closed_pipe():
+            return super().make_context(*arguments, **options)
+
+    def invoke(self, context: click.Context) -> Any:
+        with _closed_pipe():
+            return super().invoke(context)
+
+
+@contextmanager
+def _closed_pipe() -> Iterator[None]:
+    try:
+        yield
+    except BrokenPipeError as error:
+        if not _of_printing(error):
+            raise
+        raise PipeClosed from None
+
+
+@click.group(
+    cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+)
 @click.version_option(__version__, prog_name="mpmkit")
 @click.pass_context
 def commands(context: click.Context) -> None:
     """Simulate the flow of yield-stress materials with the Material Point Method.
 
-    Exit status: 0 done, 2 bad input, 3 stopped by a guard, 4 could not write, 130 interrupted.
+    Exit status: 0 done, 1 members of a study failed or a rerun differs, 2 bad input, 3 stopped by a guard,
+    4 could not write, 130 interrupted.
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
@@ -79,9 +112,12 @@ def execute(arguments: Sequence[str] | None) -> int:
         command = error.ctx.command_path if error.ctx is not None else "mpmkit"
         _tell(f"{error.format_message().rstrip('.')}; see {command} --help")
         return error.exit_code
+    except PipeClosed:
+        _let_go_of_output()
+        return PIPE_CLOSED
     except click.Abort as abort:  # click's word for it
         raise KeyboardInterrupt(str(abort.__cause__ or "")) from None
-    except OSError as error:
+    except OSError as error:  # such as a full disk
         if not _of_printing(error):
             raise
         _let_go_of_output()
@@ -96,9 +132,14 @@ def _of_printing(error: OSError) -> bool:
 
 def _let_go_of_output() -> None:
     """Send what is still to be printed nowhere, or Python would fail of it once more when it ends."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):
+            stream.flush()
+            continue
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _tell(sentence: str) -> None:
-    click.echo(f"mpmkit: {' '.join(sentence.split())}", err=True)
+    with suppress(OSError):  # nobody may read it any more
+        click.echo(f"mpmkit: {' '.join(sentence.split())}", err=True)

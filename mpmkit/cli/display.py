@@ -42,7 +42,15 @@ FIGURES = (
 )
 """What the summary shows: key, label, scale, unit and digits."""
 
-console = Console(stderr=True)
+
+class _Screen(Console):
+    """Falls silent where nobody reads any more; rich itself would end the process, and the run with it."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+
+
+console = _Screen(stderr=True)
 
 
 def say(line: str, style: str | None = None) -> None:

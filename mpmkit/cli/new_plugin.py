@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH
 from .printing import echo
 
 
@@ -17,7 +18,7 @@ from .printing import echo
     required=True,
     help="What the plug-in is.",
 )
-@click.option("--out", type=click.Path(), metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
+@click.option("--out", type=PATH, metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
 def command(name: str, kind: str, out: str | None) -> None:
     """Write a distribution for a new plug-in NAME, with tests that it passes, to be made one's own."""
     from ..registry.scaffold import new_plugin

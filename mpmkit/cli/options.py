@@ -6,7 +6,9 @@ import os
 
 import click
 
-case_file = click.argument("case", type=click.Path())
+from .paths import PATH
+
+case_file = click.argument("case", type=PATH)
 set_values = click.option(
     "--set",
     "overrides",
@@ -20,11 +22,14 @@ threads = click.option(
 )
 quiet = click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
-out = click.option(
-    "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
-)
+out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; runs/<case name> unless told.")
 study_out = click.option(
-    "--out", type=click.Path(), metavar="DIR", help="The study's directory; runs/<study name> unless told."
+    "--out", type=PATH, metavar="DIR", help="The study's directory; runs/<study name> unless told."
+)
+study_overwrite = click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace results in the study's directory that this study does not go on with.",
 )
 member_threads = click.option(
     "--threads", type=click.IntRange(min=1), help="Threads of each member; as the study says unless told."

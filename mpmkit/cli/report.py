@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH
 from .printing import echo
 
 
 @click.command("report")
-@click.argument("directory", type=click.Path())
+@click.argument("directory", type=PATH)
 def command(directory: str) -> None:
     """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""
     from ..errors import CaseError, MpmkitError, reason

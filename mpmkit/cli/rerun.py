@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 
 from . import options
+from .paths import PATH
 from .printing import echo
 
 
 @click.command("rerun")
-@click.argument("directory", type=click.Path())
-@click.option("--out", type=click.Path(), metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
+@click.argument("directory", type=PATH)
+@click.option("--out", type=PATH, metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
 @options.threads
 @options.overwrite
 @options.quiet

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .atomic import cannot_write, replacing
+from .netcdf import write_dataset
 from .variables import PARTICLE_VARIABLES, ParticleVariable, Variable, tensor_components
 
 if TYPE_CHECKING:
@@ -145,14 +145,7 @@ class History:
         Raises:
             OutputError: where the file cannot be written.
         """
-        dataset = self.dataset()
-        with replacing(path) as partial:
-            try:
-                dataset.to_netcdf(partial, engine="netcdf4")
-            except (
-                RuntimeError
-            ) as error:  # how netCDF4 reports a failure in the middle of a file: a full disk
-                raise cannot_write(path, error) from error
+        write_dataset(self.dataset(), path)
 
     def flush_if_due(self, path: Path) -> None:
         """Write if the last write is long enough ago; to be called after every row."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Container, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -25,13 +26,13 @@ class RunDirectory:
     """The files of one run.
 
     Args:
-        path: the directory.
+        path: the directory; a leading ``~`` is the home folder.
         overwrite: whether ``claim`` may clear what an earlier run left there.
         keep: names of copies of meshes that it leaves in any case: the run may have been read from them.
     """
 
     def __init__(self, path: Path, overwrite: bool = False, keep: Container[str] = ()) -> None:
-        self.path = Path(path)
+        self.path = Path(os.path.expanduser(path))
         self.overwrite = overwrite
         self._keep = keep
 
