@@ -20,10 +20,10 @@ import click
     help="What the error is against: a CSV file, an exact value, or the finest member.",
 )
 @click.option(
-    "--cost", default="wall_seconds", show_default=True, help="What the members are to cost least of."
+    "--cost", default="wall_seconds", show_default=True, help="Figure of a member that is its cost."
 )
 @click.option(
-    "--out", type=click.Path(), metavar="FILE", help="The picture; chart.png of the study unless told."
+    "--out", type=click.Path(), metavar="FILE", help="The picture; default: chart.png of the study."
 )
 def command(study: str, variable: str, reference: str, cost: str, out: str | None) -> None:
     """Chart error against cost over the members of STUDY, a study's directory, and name Pareto's front."""

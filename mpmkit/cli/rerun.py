@@ -11,7 +11,7 @@ from . import options
 
 @click.command("rerun")
 @click.argument("directory", type=click.Path())
-@click.option("--out", type=click.Path(), metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
+@click.option("--out", type=click.Path(), metavar="DIR", help="Where to; default: DIRECTORY-rerun.")
 @options.threads
 @options.overwrite
 @options.quiet
