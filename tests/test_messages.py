@@ -97,7 +97,7 @@ def test_an_object_for_a_face_is_met_with_what_to_write(value, right):
     parse_case(changed(FACE, json.loads(right)))  # it is what may stand there
 
 
-def test_a_kind_of_face_that_there_is_not_is_told_of_with_those_there_are():
+def test_an_unknown_kind_of_face_is_refused_with_the_kinds_there_are():
     text = sentence(parse_case, changed(FACE, {"kind": "moving", "velocity": [1, 0]}))
     assert 'there is no kind of face "moving"; it must be "slip", "stick", "periodic", "open"' in text
     assert FRICTION in text
@@ -122,8 +122,11 @@ NEARLY_JSON = {
     "TOML": ("[grid]\ncell_size = 0.1\n", "line 1, column 1", "TOML begins, and JSON is needed"),
     "no quotes": ("{until: 1}", "line 1, column 2", 'must stand in double quotes: "until"'),
     "Python's True": ('{"a": True}', "line 1, column 7", "True must be written as true"),
-    "half a number": ('{"a": .5}', "line 1, column 7", ".5 is no number of JSON"),
+    "half a number": ('{"a": .5}', "line 1, column 7", ".5 is not a JSON number"),
     "a unit": ('{"a": 5 mm}', "line 1, column 9", "'mm' stands behind a number; all are in SI units"),
+    "a fraction": ('{"a": 1/10}', "line 1, column 8", "'/' stands behind a number; JSON does not calculate"),
+    "a product": ('{"a": [2 * 3]}', "line 1, column 10", "'*' stands behind a number"),
+    "a percentage": ('{"a": 10%}', "line 1, column 9", "'%' stands behind a number"),
     "no comma": ('{"a": 1\n"b": 2}', "line 1, column 8", "a comma is missing"),
     "no end": ('{"a": [1, 2', "line 1, column 12", "1 '}' and 1 ']' must still come"),
 }

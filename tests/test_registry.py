@@ -1,4 +1,4 @@
-"""Discovery: whatever a stranger's distribution does stays its own problem, and is told of."""
+"""Discovery: whatever a stranger's distribution does stays its own problem, and is reported."""
 
 import json
 import logging

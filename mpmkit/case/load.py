@@ -31,7 +31,7 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
             mesh in it starts from the folder of the file.
         overrides: ``"path.to.key=value"``, applied before validation; a relative path of a mesh in one starts
             from the working directory, as on any command line.
-        registry: plug-ins to choose from; those installed unless told.
+        registry: plug-ins to choose from; default: those installed.
 
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.

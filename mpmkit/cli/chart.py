@@ -24,9 +24,9 @@ from .printing import echo
     help="What the error is against: a CSV file, an exact value, or the finest member.",
 )
 @click.option(
-    "--cost", default="wall_seconds", show_default=True, help="What the members are to cost least of."
+    "--cost", default="wall_seconds", show_default=True, help="Figure of a member that is its cost."
 )
-@click.option("--out", type=PATH, metavar="FILE", help="The picture; chart.png of the study unless told.")
+@click.option("--out", type=PATH, metavar="FILE", help="The picture; default: chart.png of the study.")
 @click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")
 def command(study: str, variable: str, reference: str, cost: str, out: str | None, overwrite: bool) -> None:
     """Chart error against cost over the members of STUDY, a study's directory, and name Pareto's front."""

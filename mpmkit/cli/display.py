@@ -66,7 +66,7 @@ class Display(logging.Handler):
     """Shows the log and the progress of a run; a context manager, called with every ``runner.Progress``.
 
     Errors of the log are left to the last sentence of ``main``, and nothing is shown before the run has
-    something to say: a case that is refused is told of in one sentence and no more.
+    something to say: a case that is refused is reported in one sentence and no more.
     """
 
     def __init__(self, name: str) -> None:

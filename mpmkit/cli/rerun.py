@@ -13,7 +13,7 @@ from .printing import echo
 
 @click.command("rerun")
 @click.argument("directory", type=PATH)
-@click.option("--out", type=PATH, metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
+@click.option("--out", type=PATH, metavar="DIR", help="Where to; default: DIRECTORY-rerun.")
 @options.threads
 @options.overwrite
 @options.quiet

@@ -92,7 +92,7 @@ def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **setting
         else:
             run(case, directory, listen=listen, **settings)
 
-    with np.errstate(all="ignore"):  # a run that diverges is told of by its guard, not by every array
+    with np.errstate(all="ignore"):  # its guard reports a run that diverges, not every array
         if quiet:
             with suppress(Undrawn):
                 go(None)

@@ -16,7 +16,7 @@ def _names(kind: str):
     return click.option(
         f"--{kind}",
         metavar="A,B,…",
-        help=f"Names of the plug-ins of kind {kind} to try; the case's own unless told.",
+        help=f"Names of the plug-ins of kind {kind} to try; default: the case's own.",
     )
 
 

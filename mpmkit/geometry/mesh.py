@@ -35,7 +35,7 @@ class Mesh(Shape):
         default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
     )
     translate: list[float] | None = quantity(
-        "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
+        "m", "shift after scaling; default: none", default=None, min_length=3, max_length=3
     )
 
     tolerance = 1e-6  # the file may hold its corners in single precision

@@ -48,7 +48,7 @@ class History:
         self._times: list[float] = []
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
         self._particles: dict[str, list[np.ndarray]] | None = None
-        self._next_flush = -np.inf  # the first row is written at once: a full disk is told of at the start
+        self._next_flush = -np.inf  # the first row is written at once: a full disk is noticed at the start
 
     def __len__(self) -> int:
         return len(self._times)

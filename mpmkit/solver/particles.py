@@ -154,7 +154,7 @@ class Particles:
                 array[...] = array[local]
 
     def kinematics(self, group: Group) -> Kinematics:
-        """What the law of a group is told of its particles."""
+        """What the law of a group is given of its particles."""
         part, F = group.part, self.deformation_gradient
         return Kinematics(
             velocity_gradient=self.velocity_gradient[part],

@@ -43,7 +43,7 @@ class Simulation:
         """
         Args:
             case: a validated case.
-            particles: a state to go on from; the case's bodies in their places unless told.
+            particles: a state to go on from; default: the case's bodies in their places.
             fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
 
         Raises:

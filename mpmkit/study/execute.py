@@ -40,9 +40,9 @@ def execute(
         members: of the study.
         store: keeps what each gave, as soon as it is there.
         threads: of each member.
-        executor: runs them; processes of this machine unless given.
-        workers: how many at once on this machine; as many as its cores hold of ``threads`` unless told.
-        listen: told of each member that has come to its end.
+        executor: runs them; default: processes of this machine.
+        workers: how many at once on this machine; default: as many as its cores hold of ``threads``.
+        listen: called for each member that has ended.
 
     Raises:
         KeyboardInterrupt: what has finished is kept.

@@ -25,7 +25,7 @@ def require_number(plugin: Plugin, what: str, value: Any) -> float:
     """The number that a plug-in gave for ``what``, which may be no number, ``nan``, all the same.
 
     Raises:
-        PluginFault: it is none of Python's or numpy's real numbers, nor an array of one.
+        PluginFault: it is not a real number of Python or numpy, nor an array of one.
     """
     if isinstance(value, float):
         return value
