@@ -89,11 +89,9 @@ def members_of(study: Study) -> list[Member]:
 
 
 def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Member:
-    changes: Changes = dict(study.common)
-    for dimension, label in labels.items():
-        changes |= _changes(study, dimension, label)
     title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
     try:
+        changes = _all_changes(study, labels)
         data, remarks = _with_laws(base, changes)
         for path, value in changes.items():
             assign(data, path, value)
@@ -137,6 +135,32 @@ def _at(data: Any, path: str) -> Any:
         else:
             return None
     return data
+
+
+def _all_changes(study: Study, labels: dict[str, Any]) -> Changes:
+    """What is changed in a member, in the order in which it is assigned.
+
+    A change of a place takes back what was changed within it before, and its label would be untrue. A
+    dimension may say of a place what ``common`` says too: that is what members have who say nothing.
+
+    Raises:
+        ValueError: two changes of one place.
+    """
+    changes: Changes = {}
+    origin: dict[str, str] = {}
+    parts = {"common": study.common} | {name: _changes(study, name, label) for name, label in labels.items()}
+    for part, said in parts.items():
+        for path, value in said.items():
+            for earlier, of in origin.items():
+                again = path == earlier and of != "common"
+                if again or earlier.startswith(f"{path}."):
+                    raise ValueError(
+                        f"'{of}' changes {earlier}, and '{part}' changes {path} after it, so that the first "
+                        "change is lost; they must change different places"
+                    )
+            changes[path] = value
+            origin[path] = part
+    return changes
 
 
 def _changes(study: Study, dimension: str, label: Any) -> Changes:
