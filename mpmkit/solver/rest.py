@@ -124,11 +124,12 @@ def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
         return None
     slowest = int(np.argmax(seconds))
     period, lasts = periods[slowest], seconds[slowest]
+    count = max(1, round(lasts / period))
     how_long = "to the end" if lasts >= case.until else "until viscosity has damped it, at the earliest"
     return (
         "gravity sets in at once on a fluid that begins without pressure: its pressure swings between about "
         f"0 and twice that of its weight, with a period of about 4 h/c = {period:.2g} s, {how_long} "
-        f"({max(1, round(lasts / period))} periods, {lasts:.2g} s); take means over a few periods"
+        f"({count} {'period' if count == 1 else 'periods'}, {lasts:.2g} s); take means over a few periods"
     )
 
 
