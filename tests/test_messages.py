@@ -166,6 +166,15 @@ def test_a_key_that_stands_twice_among_many_is_found_at_once(tmp_path):
     assert time.perf_counter() - begin < 2
 
 
+def test_a_file_without_an_end_is_refused(tmp_path, monkeypatch):
+    """/dev/zero was read until the memory was full."""
+    monkeypatch.setattr("mpmkit.case.load.LARGEST", 1000)
+    file = tmp_path / "c.json"
+    for size, said in ((1000, "is not valid JSON"), (1001, "has more than 1,000 characters")):
+        file.write_text("x" * size)
+        assert said in sentence(load_case, file)
+
+
 def test_what_is_said_to_install_is_what_the_extras_hold():
     """By the names of the packages, so that it works outside a registry that has mpmkit."""
     root = Path(__file__).parents[1]

@@ -17,7 +17,7 @@ from .guards import Guards, stop
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
-from .rest import put_under_weight
+from .rest import put_under_weight, swinging
 from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
@@ -63,6 +63,9 @@ class Simulation:
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
         self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
+        begins = particles is None and not self.starts_under_weight
+        self.swinging = swinging(case, self.grid, self.particles) if begins else None
+        """What is said of a pressure that swings about that of the weight."""
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
@@ -128,6 +131,8 @@ class Simulation:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
             said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
+        elif self.swinging is not None:
+            said.append(self.swinging)
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
