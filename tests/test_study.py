@@ -10,7 +10,6 @@ from studies import CASE, LEAVES, NOTHING, Now, status, study
 
 import mpmkit
 from mpmkit.case import parse_case
-from mpmkit.errors import CaseError
 from mpmkit.study import collect, execute, members_of
 from mpmkit.study.execute import Unfinished
 from mpmkit.study.store import Store
@@ -122,39 +121,6 @@ def test_a_list_of_members_and_those_that_fail_among_them(tmp_path):
     rows = (tmp_path / "table.md").read_text().splitlines()[2:]
     assert rows[1].startswith(r"| a\|b | ")
     assert (tmp_path / "differences.png").exists()
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"vary": {"scheme.shape.domain": ["fixed", "stretch"], "scheme.shape": ["cpgimp"]}},
-        {"vary": {"box": {"a": {"scheme.shape.domain": "fixed"}}, "scheme.shape": ["cpgimp"]}},
-        {"vary": {"a": {"one": {"until": 0.01}}, "b": {"two": {"until": 0.02}}}},
-        {"vary": {"until": [0.01, 0.02], "b": {"two": {"until": 0.02}}}},
-        {"common": {"scheme.shape.domain": "fixed"}, "vary": {"scheme.shape": ["cpgimp"]}},
-        {"members": {"a": {"scheme.shape.domain": "fixed", "scheme.shape": "cpgimp"}}},
-    ],
-    ids=["within", "within, of a set", "same, of sets", "same", "common", "of a member"],
-)
-def test_a_change_that_takes_back_another_is_refused(given):
-    """It would run the same case under two labels, of which one is untrue."""
-    until = "until" in json.dumps(given)
-    first, second = ("until", "until") if until else ("scheme.shape.domain", "scheme.shape")
-    with pytest.raises(CaseError) as refused:
-        members_of(study(**given))
-    assert f"changes {first}, and " in str(refused.value)
-    assert f"changes {second} after it" in str(refused.value)
-
-
-def test_a_change_within_another_and_one_of_what_all_have_are_kept():
-    """A plug-in first and then its parameter, and a member that departs from what is common."""
-    given = study(
-        common={"until": 0.01},
-        vary={"scheme.shape": ["cpgimp"], "scheme.shape.domain": ["fixed", "stretch"], "until": [0.02]},
-    )
-    cases = [member.case for member in members_of(given)]
-    assert [case.scheme.shape.domain for case in cases] == ["fixed", "stretch"]
-    assert {case.until for case in cases} == {0.02}
 
 
 def test_what_has_finished_is_not_run_again_and_what_has_changed_or_failed_is(tmp_path):
