@@ -12,7 +12,6 @@ from typing import Any
 import click
 
 from ..errors import MpmkitError, OutputError
-from ..version import __version__
 from . import (
     bench,
     chart,
@@ -60,10 +59,22 @@ def _closed_pipe() -> Iterator[None]:
         raise PipeClosed from None
 
 
+def _tell_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked:
+        # To read the metadata of the package takes a third of the start.
+        from ..version import __version__
+
+        click.echo(f"mpmkit, version {__version__}")
+        context.exit()
+
+
 @click.group(
     cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
 )
-@click.version_option(__version__, prog_name="mpmkit")
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_tell_version,
+    help="Show the version and exit.",
+)  # fmt: skip
 @click.pass_context
 def commands(context: click.Context) -> None:
     """Simulate the flow of yield-stress materials with the Material Point Method.

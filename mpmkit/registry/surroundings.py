@@ -10,26 +10,33 @@ import logging
 import os
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
+Settings = tuple[str | None, Any]
+"""The working directory, None if it was removed, and how NumPy treats errors."""
 
-@contextmanager
-def settings_kept() -> Iterator[None]:
-    """The working directory and NumPy's treatment of errors are after the block what they were before."""
-    before = _working_directory()
-    try:
-        with np.errstate():
-            yield
-    finally:
-        if before is not None and _working_directory() != before:
-            os.chdir(before)
+
+def settings() -> Settings:
+    """The present ones: taken in every step of a run, in two microseconds."""
+    return _working_directory(), np.geterr()
+
+
+def restore(before: Settings) -> None:
+    """Set back what is no longer as it was."""
+    directory, errors = before
+    if directory is not None and _working_directory() != directory:
+        os.chdir(directory)
+    if np.geterr() != errors:
+        np.seterr(**errors)
 
 
 @contextmanager
 def settings_and_log_kept() -> Iterator[None]:
-    """As ``settings_kept``, and so are the filters of warnings, and what the log of mpmkit lets through."""
+    """After the block, the settings, filters of warnings, and what the log lets through are as they were."""
+    before = settings()
     manager = logging.root.manager
     disabled = manager.disable
     ours = {
@@ -37,10 +44,11 @@ def settings_and_log_kept() -> Iterator[None]:
         for name, logger in manager.loggerDict.items()
         if isinstance(logger, logging.Logger) and name.partition(".")[0] == "mpmkit"
     }
-    with settings_kept(), warnings.catch_warnings():
+    with warnings.catch_warnings():
         try:
             yield
         finally:
+            restore(before)
             logging.disable(disabled)
             for logger, (off, level, propagate) in ours.items():
                 logger.disabled, logger.propagate = off, propagate
@@ -48,6 +56,7 @@ def settings_and_log_kept() -> Iterator[None]:
 
 
 def _working_directory() -> str | None:
-    with suppress(OSError):  # someone has removed it
+    try:
         return os.getcwd()
-    return None
+    except OSError:  # someone has removed it
+        return None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import AbstractContextManager
 
 import numpy as np
 
@@ -54,8 +53,9 @@ class Simulation:
         self.fraction = fraction
         self.time = 0.0
         self.steps = 0
-        self._plugins = plugins_of(case)
-        with self.blaming():
+        self.blaming = blaming_plugins(plugins_of(case), lambda: (self.steps, self.time))
+        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
+        with self.blaming:
             self._set_up(particles)
 
     def _set_up(self, particles: Particles | None) -> None:
@@ -104,13 +104,9 @@ class Simulation:
         self.limits = Limits(*map(float, state["limits/"]))
         restore(self.components, state)
 
-    def blaming(self) -> AbstractContextManager[None]:
-        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
-        return blaming_plugins(self._plugins, lambda: (self.steps, self.time))
-
     def choose_time_step(self) -> None:
         """Recompute the limits, and with them the step."""
-        with self.blaming():
+        with self.blaming:
             self._choose_time_step()
 
     def _choose_time_step(self) -> None:
@@ -127,7 +123,7 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
-        with self.blaming():
+        with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
             said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
@@ -143,7 +139,7 @@ class Simulation:
 
     def warnings(self) -> list[str]:
         """What the user should know of the materials, and of the step that was chosen."""
-        with self.blaming():
+        with self.blaming:
             of_materials = [
                 sentence
                 for group in self.particles.groups
@@ -174,7 +170,7 @@ class Simulation:
         Raises:
             GuardStop: the run is beyond saving, see ``guards``, or a plug-in is at fault.
         """
-        with self.blaming():
+        with self.blaming:
             return self._advance(at_most)
 
     def _advance(self, at_most: float) -> float:
@@ -225,5 +221,5 @@ class Simulation:
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
-        with self.blaming():
+        with self.blaming:
             self.guards.check()
