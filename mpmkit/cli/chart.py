@@ -50,4 +50,4 @@ def command(study: str, variable: str, reference: str, cost: str, out: str | Non
     click.echo("|---|---|---|")
     for point in found.front:
         click.echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
-    click.echo(f"\nof {len(found.points)} members; picture in {path}")
+    click.echo(f"\nof {len(found.points)} member{'s' * (len(found.points) > 1)}; picture in {path}")
