@@ -95,7 +95,7 @@ def test_a_run_is_overwritten_only_if_asked(case, capsys):
         (["tiny.json", "--threads", "0"], "Invalid value for '--threads'"),
         (["tiny.json", "--set", "until"], "it must read path.to.key=value"),
         (["tiny.json", "--set", "scheme.order=uls"], 'did you mean "usl"?'),
-        (["tiny.json", "--set", "grid.cell_size=1e-6"], "GiB of memory, but this machine has"),
+        (["tiny.json", "--set", "grid.cell_size=1e-6"], "GiB is left for this run"),
         (["tiny.json", "--set", "bodies.0.shape.upper=[0.21,0.01]"], "holds no particle"),
         (["tiny.json", "--set", "bodies.0.material.sound_speed=1e160"], "sound_speed is 1e+160"),
         (["tiny.json", "--set", "name=../up"], 'name is "../up"'),

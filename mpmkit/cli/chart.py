@@ -53,4 +53,4 @@ def command(study: str, variable: str, reference: str, cost: str, out: str | Non
     echo("|---|---|---|")
     for point in found.front:
         echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
-    echo(f"\nof {len(found.points)} members; picture in {path}")
+    echo(f"\nof {len(found.points)} member{'s' * (len(found.points) > 1)}; picture in {path}")
