@@ -69,7 +69,7 @@ def execute(
         with pool as at_work:
             broken, given_up = _run(at_work, {number: left[number] for number in lost}, threads, done)
         if given_up:
-            titles = [left[number].title for number in given_up]
+            titles = [left[number].title for number in sorted(given_up)]
             raise Unfinished(
                 f"the executor gave up {named(titles, len(members))}; the same study goes on from there"
             )
