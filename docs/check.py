@@ -29,8 +29,8 @@ IMAGE = re.compile(r"docs/images/[\w/*.]+\.png")
 ROUNDED = 0.6
 """Of the last digit given: by how much a number may be off that is said rounded."""
 README_NUMBERS = re.compile(
-    r"T500 ([\d.]+) s, spread ([\d.]+) m, where an\s+independent\s+"
-    r"incompressible finite-element solution has ([\d.]+) s and ([\d.]+) m"
+    r"T500 ([\d.]+) s, spread ([\d.]+) m, where an independent incompressible finite-element solution has "
+    r"([\d.]+) s and ([\d.]+) m".replace(" ", r"\s+")
 )
 
 
