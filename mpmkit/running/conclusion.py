@@ -16,6 +16,8 @@ from .recorder import Recorder
 LOGGER = logging.getLogger("mpmkit")
 FRACTURED = 0.05
 """Part of the volume drawn apart that is worth a warning."""
+CREATED = 0.02
+"""Energy of solids that came from nowhere, over what there was, that is worth a warning."""
 
 
 def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -30,6 +32,7 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     recorder.write()
     _write_summary(recorder, summary)
     _warn_of_fracture(recorder.simulation)
+    _warn_of_energy(recorder.simulation)
 
 
 def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -98,4 +101,14 @@ def _warn_of_fracture(simulation: Simulation) -> None:
             "at the end %.0f %% of the volume is in particles that are drawn apart further than a cell "
             "(fractured_fraction): set scheme.splitting to true",
             100 * fractured,
+        )
+
+
+def _warn_of_energy(simulation: Simulation) -> None:
+    balance = simulation.guards.balance
+    if balance is not None and balance.solid and balance.most_excess > CREATED:
+        LOGGER.warning(
+            "up to %.3g %% of the energy came from nowhere: the motion of the solid is not to be trusted any "
+            "better; order 'usl' takes energy instead, and a shorter step makes less of it",
+            100 * balance.most_excess,
         )
