@@ -5,11 +5,17 @@ from __future__ import annotations
 from ..contracts import Plugin
 from .model import Case
 
+SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution")
+"""Kinds of plug-ins that a scheme is made of."""
+
 
 def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
     """Kind and plug-in, for every plug-in that the case uses."""
     scheme = case.scheme
-    used = [(kind, getattr(scheme, kind)) for kind in ("shape", "order", "velocity", "volumetric")]
+    used = [
+        (kind, getattr(scheme, kind))
+        for kind in ("shape", "order", "velocity", "volumetric", "redistribution")
+    ]
     for body in case.bodies:
         law = body.material.constitutive_law
         used.append(("law", law))

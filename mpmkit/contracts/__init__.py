@@ -8,6 +8,7 @@ from .hooks import KINDS, hookimpl
 from .law import ConstitutiveLaw, Motion, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -16,13 +17,17 @@ __all__ = [
     "API_VERSION",
     "KINDS",
     "REST_SHEAR_RATE",
+    "Cells",
     "ConstitutiveLaw",
     "ElastoviscoplasticLaw",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
+    "Lattice",
     "Motion",
     "Operations",
     "Plugin",
+    "Redistributing",
+    "Redistribution",
     "ShapeFunction",
     "StateVariable",
     "UpdateOrder",

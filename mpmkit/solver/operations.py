@@ -16,6 +16,7 @@ from ..registry import audit
 from .averager import Averager
 from .grid import Grid, Window
 from .particles import Group, Particles
+from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
 
@@ -40,6 +41,7 @@ class SceneOperations:
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
+        self.stage = Stage(scheme, grid, particles, radial)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
@@ -67,6 +69,8 @@ class SceneOperations:
     def begin(self) -> int | None:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
         lost = self._sort()
+        if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
+            lost = self._sort()
         if lost is None:
             self._rehearsing = self._begun % audit.INTERVAL == 0
             self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
@@ -119,11 +123,14 @@ class SceneOperations:
 
     def _map(self, momentum: bool, forces: bool) -> None:
         p, w = self.particles, self.window
+        volume = p.volume
         if forces:
             volumes.assign(p.mapped_pressure, self._treated(p.pressure))
+            if self.scheme.redistribution.equal_boxes:
+                volume = p.volume * p.quadrature
         self._scatter(
             w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
+            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure, self.gravity,
             self.cell_size, momentum, forces,
         )  # fmt: skip
 
@@ -215,6 +222,9 @@ class SceneOperations:
 
     def _follow_domains(self, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
+        if self.scheme.redistribution.equal_boxes:
+            self.stage.follow(dt)
+            return
         least = self._no_rows if p.least_half_size is None else p.least_half_size
         domains.follow_strain(p.velocity_gradient, dt, p.box, least, p.half_size)
         if rule == "stretch":
@@ -237,6 +247,8 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
+        if self.scheme.redistribution.equal_boxes:
+            return
         self.relaxation.relax(self.averager, self.scheme.volumetric.relaxation_rate(self), dt)
 
     # --- Fields in general
