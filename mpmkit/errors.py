@@ -37,16 +37,34 @@ class GuardStop(MpmkitError):
         self.step = step
         self.particle = particle
 
+    def __reduce__(self) -> tuple:
+        """So that it can travel from a process to another one: a pool waits for ever for one that cannot."""
+        return _guard_stop, (self.guard, str(self), self.step, self.particle)
+
+
+def _guard_stop(guard: str, message: str, step: int, particle: int | None) -> GuardStop:
+    return GuardStop(guard, message, step=step, particle=particle)
+
+
+class PluginStop(GuardStop):
+    """A plug-in raised an exception, gave back what cannot be used, or wrote where it must not.
+
+    It is never a sign that the case or its time step is wrong.
+    """
+
+    def __init__(self, message: str, *, step: int = 0, particle: int | None = None) -> None:
+        super().__init__("plug-in-error", message, step=step, particle=particle)
+
 
 class PluginFault(Exception):
     """A plug-in gave back what cannot be used, or wrote where it must not; ``blame`` names it.
 
     Attributes:
-        plugin: whose fault it is.
+        plugin: whose fault it is; None for the one that called the framework.
         particle: number of the particle concerned, or None.
     """
 
-    def __init__(self, plugin: object, what: str, *, particle: int | None = None) -> None:
+    def __init__(self, plugin: object | None, what: str, *, particle: int | None = None) -> None:
         super().__init__(what)
         self.plugin = plugin
         self.particle = particle
@@ -58,6 +76,10 @@ class OutputError(MpmkitError):
     exit_status = 4
 
 
+class Undrawn(KeyboardInterrupt):
+    """Ctrl-C while the pictures were drawn of a run that had ended; says how to draw them."""
+
+
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C in the middle of a run; says where the results up to then are."""
 
@@ -66,5 +88,8 @@ def reason(error: BaseException) -> str:
     """What an error says, in one line; for one that was not written to be read, its name as well."""
     if isinstance(error, MpmkitError):
         return " ".join(str(error).split())
-    text = textwrap.shorten(str(error), LONGEST_REASON, placeholder=" …")
+    try:
+        text = textwrap.shorten(str(error), LONGEST_REASON, placeholder=" …")
+    except Exception:  # an exception of a plug-in's own may not even be able to say what it is
+        text = ""
     return f"{type(error).__name__}: {text}" if text else type(error).__name__

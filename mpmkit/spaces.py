@@ -30,9 +30,9 @@ class Space:
         return tuple(f"{axis}_{side}" for axis in self.axes for side in ("min", "max"))
 
     def particle_volume(self, position: np.ndarray, size: np.ndarray) -> np.ndarray:
-        """Volume, m³, of boxes of side lengths ``size`` (dim,) centred at ``position`` (n, dim)."""
-        area = np.full(len(position), float(np.prod(size)))
-        return 2 * np.pi * position[:, 0] * area if self.radial else area
+        """Volume, m³, of boxes with sides ``size`` (n, dim) or (dim,) centred at ``position`` (n, dim)."""
+        area = np.broadcast_to(np.prod(size, axis=-1), len(position))
+        return 2 * np.pi * position[:, 0] * area if self.radial else area.copy()
 
 
 SPACES = {

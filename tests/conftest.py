@@ -21,3 +21,7 @@ def one_thread():
 def each_number_of_threads(one_thread, request):
     """For tests of kernels: once with one thread, once with two."""
     numba.set_num_threads(request.param)
+
+
+collect_ignore = ["version1"]
+"""A distribution of its own, whose tests ``test_versions.py`` runs."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import copy
-from itertools import product
+from itertools import pairwise, product
 
+import numba
 import numpy as np
 import pytest
 
 from mpmkit.case import parse_case
-from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
+from mpmkit.kernels import nodes as kernels
+from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, PLANES, STICK
 from mpmkit.solver import active_nodes
 from mpmkit.solver.active_nodes import ActiveNodes
 from mpmkit.solver.grid import Grid, Window
@@ -64,19 +66,21 @@ def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces
     inside = np.zeros(window.shape[: grid.dim], dtype=bool)
     for begin, end in active.rows:
         inside.reshape(-1)[begin:end] = True
-    for face, (first, behind) in enumerate(zip(active.face_first[:-1], active.face_first[1:], strict=True)):
-        axis, side = divmod(face, 2)
+    for k, (first, behind) in enumerate(zip(active.plane_first[:-1], active.plane_first[1:], strict=True)):
+        axis, place = divmod(k, PLANES)
+        side = min(place, 1)
         kind, (lower, upper) = grid.faces[axis, side], window.walls[axis]
+        ghosts = [lower - 1, upper + 1, upper][place]
         expected = []
-        for place in map(np.array, np.argwhere(inside)):
-            image, k = place.copy(), place[axis]
-            if kind == PERIODIC and (k < lower if side == 0 else upper <= k <= upper + 1):
-                image[axis] += grid.cells[axis] * (1 - 2 * side)
-            elif kind not in (OPEN, PERIODIC) and (k < lower if side == 0 else upper < k <= upper + 1):
-                image[axis] = 2 * window.walls[axis, side] - k
-            else:
+        for node in map(np.array, np.argwhere(inside)):
+            image = node.copy()
+            if node[axis] != ghosts or kind == OPEN or (place == 2 and kind != PERIODIC):
                 continue
-            expected.append([place @ window.strides[: grid.dim], image @ window.strides[: grid.dim]])
+            if kind == PERIODIC:
+                image[axis] = lower + (node[axis] - lower) % grid.cells[axis]
+            else:
+                image[axis] = 2 * window.walls[axis, side] - node[axis]
+            expected.append([node @ window.strides[: grid.dim], image @ window.strides[: grid.dim]])
         found = active.mirrors[first:behind, :2].tolist()
         held = [pair for pair in expected if pair in found]
         assert sorted(found) == sorted(held)
@@ -85,6 +89,45 @@ def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces
             if [ghost, image] not in found:  # within a row, but between what particles can touch
                 assert not active_nodes._touched(window, *boxes).reshape(-1)[[ghost, image]].any()
         assert inside.reshape(-1)[active.mirrors[first:behind, :2]].all()
+
+
+def narrow(cells):
+    """Sets of faces of domains of 1, 2 and 3 cells along an axis, in two and three dimensions."""
+    pairs = [[PERIODIC, PERIODIC], [MIRROR, STICK], [FRICTION, OPEN]]
+    return [
+        (list(faces), size)
+        for dim in (2, 3)
+        for faces in product(pairs, repeat=dim)
+        for size in product(cells, repeat=dim)
+    ]
+
+
+def test_no_two_entries_of_a_plane_share_a_node():
+    """They are handled in parallel. Along a periodic axis of one cell three planes have the same image."""
+    for faces, cells in narrow([1, 2, 3]):
+        _, _, _, active = reached(faces, cells, 0)
+        for first, behind in pairwise(active.plane_first):
+            written = active.mirrors[first:behind, :2]
+            assert len(np.unique(written)) == written.size, (faces, cells)
+
+
+@pytest.mark.parametrize("cells", [1, 2, 3])
+@pytest.mark.parametrize("size", [(0, 4000), (4000, 0), (0, 70, 60), (70, 0, 60), (70, 60, 0)], ids=str)
+def test_two_threads_lose_no_mass_across_a_narrow_period(size, cells):
+    """Over and over on planes of thousands of nodes, which two threads share. Sums of ones are exact."""
+    numba.set_num_threads(2)
+    across = size.index(0)
+    faces = [[PERIODIC, PERIODIC] if axis == across else [OPEN, OPEN] for axis in range(len(size))]
+    number = np.array([n or cells for n in size])
+    grid = Grid(np.zeros(len(size)), number, 1.0, np.array(faces), np.zeros((len(size), 2)), ("x", "y", "z"))
+    window, lowest = Window(grid), np.zeros((1, len(size)), dtype=np.int64)
+    window.cover(lowest[0], number - 1)
+    active = ActiveNodes(window, lowest, number[None] - 1)
+    assert np.diff(active.plane_first).max() > kernels.FEW
+    for _ in range(300):
+        window.nodes[:, 0] = 1.0
+        kernels.fold(window.nodes, active.faces, active.mirrors, active.plane_first, 0, 1, True)
+        assert window.nodes[:, 0].sum() == len(window.nodes)
 
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+import shlex
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,8 +15,10 @@ import pytest
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.plugins import cautions
 from mpmkit.case.resolved import resolved
+from mpmkit.cli.commands import execute
 from mpmkit.contracts import ElastoviscoplasticLaw
 from mpmkit.plan import cheaper_models, expected_error, plan
+from mpmkit.running.execution import _interrupted
 from mpmkit.solver.memory import expected_particles
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -140,6 +144,7 @@ def rows():
         return list(csv.DictReader(lines))
 
 
+RELAXED = ["bodies.0.material.law=herschel-bulkley", "bodies.0.material.form=relaxed"]
 SOUNDS = {"mach 0.1": {"mach": 0.1}, "factor 10": {"factor": 10}, "factor 20": {"factor": 20}}
 
 
@@ -147,7 +152,7 @@ SOUNDS = {"mach 0.1": {"mach": 0.1}, "factor 10": {"factor": 10}, "factor 20": {
     "row", [row for row in rows() if row["dim"] == "2"][::7], ids=lambda row: "-".join(row.values())
 )
 def test_a_member_of_the_study_has_its_own_error(row):
-    law = ["bodies.0.material.law=herschel-bulkley", "bodies.0.material.regularisation=100"]
+    law = [*RELAXED, "bodies.0.material.regularisation=100"]
     cell = 0.3 / int(row["cells"])
     case = load_case(
         CASES / "slump.json",
@@ -162,19 +167,83 @@ def test_a_member_of_the_study_has_its_own_error(row):
     assert expected_error(case) == (float(row["error"]) if row["error"] else None)
 
 
-def test_errors_are_known_of_what_the_study_has_and_of_nothing_else():
+def test_finer_cells_than_the_studys_have_the_error_of_its_finest():
     fine = load_case(CASES / "slump.json")
     assert expected_error(fine) == expected_error(
         load_case(CASES / "slump.json", ["grid.cell_size=0.01", "grid.domain.z=[0, 0.31]"])
     )
-    for changes in (
-        ["grid.cell_size=0.03", "grid.domain.z=[0, 0.33]"],
-        ['bodies.0.material.sound_speed={"factor": 5}'],
-        ['bodies.0.material.sound_speed={"mach": 0.3}'],
-        ["scheme.shape=linear"],
-    ):
-        assert expected_error(load_case(CASES / "slump.json", changes)) is None, changes
-    assert expected_error(load_case(CASES / "two_discs.json")) is None
+    assert expected_error(load_case(CASES / "slump_quarter.json")) == pytest.approx(0.005, abs=0.001)
+
+
+WATER = ["bodies.0.material.yield_stress=0", "bodies.0.material.consistency=0.001"]
+UNKNOWN = {
+    "coarser than the study": ["grid.cell_size=0.03", "grid.domain.z=[0, 0.33]"],
+    "a slow sound": ['bodies.0.material.sound_speed={"factor": 5}'],
+    "a fast sound": ['bodies.0.material.sound_speed={"factor": 200}'],
+    "a large Mach number": ['bodies.0.material.sound_speed={"mach": 0.3}'],
+    "stopped in the study": ["scheme.shape=linear"],
+    "velocity pic": ["scheme.velocity=pic"],
+    "velocity flip": ["scheme.velocity=flip"],
+    "a rate of apic": ["scheme.velocity.rate=0"],
+    "a stick floor": ["grid.faces.z_min=stick"],
+    "a friction floor": ['grid.faces.z_min={"kind": "friction", "coefficient": 0.4}'],
+    "a wall at the side": ["grid.faces.r_max=slip"],
+    "fixed boxes": ["scheme.shape.domain=fixed"],
+    "no splitting": ["scheme.splitting=false"],
+    "no relaxation": ["scheme.volumetric.relaxation=0"],
+    "one particle a cell": ["bodies.0.particles_per_cell=1"],
+    "nine particles a cell": ["bodies.0.particles_per_cell=9"],
+    "water": WATER,
+    "another yield stress": ["bodies.0.material.yield_stress=100"],
+    "another density": ["bodies.0.material.density=2300"],
+    "another modulus": ["bodies.0.material.shear_modulus=1e6"],
+    "m = 1 s": [*RELAXED, "bodies.0.material.regularisation=1"],
+    "not relaxed": [RELAXED[0], "bodies.0.material.regularisation=100"],
+    "another law": ["bodies.0.material=" + json.dumps(FLUID | {"law": "bingham-evp"})],
+    "a longer step": ["scheme.time_step.fraction=0.5"],
+    "no viscous limit": ['scheme.time_step.ignore=["viscous"]'],
+    "another height": ["bodies.0.shape.height=0.25"],
+    "it is thrown": ["bodies.0.velocity=[0, -1]"],
+    "less gravity": ["gravity=[0, -1.62]"],
+    "a narrow domain": ["grid.domain.r=[0, 0.2]"],
+    "plane strain": ["space=plane-strain", 'grid.domain={"x": [-0.5, 0.5], "z": [0, 0.31]}'],
+}
+
+
+@pytest.mark.parametrize("changes", UNKNOWN.values(), ids=UNKNOWN)
+def test_what_is_no_axis_of_the_study_is_not_known(changes):
+    assert expected_error(load_case(CASES / "slump.json", changes)) is None
+
+
+KNOWN = {
+    "relaxed": [*RELAXED, "bodies.0.material.regularisation=100"],
+    "other names for the same": ["gravity=[0, -9.81]", "grid.faces.r_min=symmetry", "grid.faces.r_max=open"],
+    "what is written": ["output.report=false", "name=other", "until=1.5"],
+    "a wider domain": ["grid.domain.r=[0, 0.5]"],
+}
+
+
+@pytest.mark.parametrize("changes", KNOWN.values(), ids=KNOWN)
+def test_what_changes_nothing_of_the_flow_leaves_the_error_known(changes):
+    assert expected_error(load_case(CASES / "slump.json", changes)) == 0.005
+
+
+def test_nothing_is_known_of_other_scenes():
+    for name in ("two_discs", "film", "slump_ferreira", "slump_as_published", "vibrating_bar"):
+        assert expected_error(load_case(CASES / f"{name}.json")) is None, name
+
+
+def test_the_study_that_plan_knows_is_the_shipped_one():
+    study = json.loads((files("mpmkit.plan") / "slump_study.json").read_text(encoding="utf-8"))
+    shipped = json.loads((CASES / "studies/accuracy_vs_cost.json").read_text(encoding="utf-8"))
+    base = json.loads((CASES / "slump.json").read_text(encoding="utf-8"))
+    assert {"description": base["description"], **study["case"]} == base
+    models = shipped["vary"]["model"]
+    assert study["models"] == {
+        "axisymmetric": models["axisymmetric, 20 mm"],
+        "3d": models["quarter, 20 mm"],
+    }
+    assert study["laws"]["relaxed"] == shipped["vary"]["law"]["relaxed"]
 
 
 def test_what_the_study_saw_fail_is_cautioned_against():
@@ -212,6 +281,46 @@ def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
     assert lines["exact yield"]["steps"] < cost["steps"] / 5  # no viscous limit
     assert lines["all of these"]["expected_seconds"] < lines["a quarter"]["expected_seconds"]
     json.dumps(cost, allow_nan=False)
+
+
+def test_the_commands_run_the_case_as_it_was_asked_for(monkeypatch, tmp_path, capsys):
+    """What ``plan`` prints is typed as it stands: other material, other time and all."""
+    monkeypatch.setattr("mpmkit.plan.cost.WORTH_ADVICE", 0.0)
+    monkeypatch.setattr("mpmkit.plan.cost.TRIAL_SECONDS", 0.05)
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "a case.json"
+    coarse = {"grid.cell_size": 0.02, "grid.domain.z": [0, 0.36], "grid.faces": {"z_min": "slip"}}
+    coarse["output"] = {"report": False}
+    file.write_text(json.dumps(scene(**coarse).model_dump(mode="json", exclude_unset=True)))
+    asked = ["bodies.0.material.yield_stress=50", "description=it's mine", "bodies.0.material.density=1900"]
+    options = [word for override in asked for word in ("--set", override)]
+    assert execute(["plan", file.name, *options, "--until", "0.05", "--threads", "1"]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    commands = [shlex.split(line) for line in lines if line.startswith("mpmkit run ")]
+    models = {}
+    for model in cheaper_models(load_case(file, [*asked, "until=0.05"])):
+        models[json.dumps(resolved(model.case), sort_keys=True)] = model.name
+    assert len(commands) >= 3
+    for command in commands:
+        sets = [command[at + 1] for at, word in enumerate(command) if word == "--set"]
+        assert command[command.index("--until") + 1] == "0.05"
+        case = load_case(command[2], [*sets, "until=0.05"])
+        assert case.bodies[0].material.yield_stress == 50
+        assert case.description == "it's mine"
+        assert models.pop(json.dumps(resolved(case), sort_keys=True))
+    cheapest = commands[-1]
+    assert execute([*cheapest[1:], "--out", "run", "--quiet"]) == 0
+    written = load_case("run/case.json")
+    assert (written.space, written.until) == ("axisymmetric", 0.05)
+    assert written.bodies[0].material.density == 1900
+
+
+def test_the_command_that_goes_on_with_a_run_can_be_typed_as_it_stands():
+    directory = SimpleNamespace(path=Path("runs/it's mine"))
+    stopped = SimpleNamespace(simulation=SimpleNamespace(time=1.0), directory=directory)
+    said = _interrupted(stopped, saved=True)
+    typed = shlex.split(said.partition("go on with: ")[2])
+    assert typed == ["mpmkit", "run", "--resume", "runs/it's mine"]
 
 
 def test_a_run_of_seconds_needs_no_advice():

@@ -358,7 +358,7 @@ def test_a_resolved_case_says_where_a_body_stands_and_can_be_run():
     [
         ("", "the case file is empty"),
         ("[]", "a case must be a JSON object, not []"),
-        ("{,}", "is not valid JSON: Expecting property name enclosed in double quotes at line 1, column 2"),
+        ("{,}", "is not valid JSON: at line 1, column 2, there is a comma too many"),
         ('{"until": 1, "until": 2}', "the key 'until' stands twice in one object"),
         ('{"a": {"b": 1, "b": 1}}', ": a: the key 'b' stands twice"),
         ('{"a": [{"b": 1}, {"b": {"c": 1, "c": 1}}], "d": NaN}', ": a.1.b: the key 'c' stands twice"),
@@ -479,3 +479,60 @@ def test_the_schema_has_units_descriptions_and_every_plugin():
         for entry in plugins.values():
             for name, parameter in entry.plugin.model_json_schema().get("properties", {}).items():
                 assert name == "name" or parameter.get("description"), (kind, entry.name, name)
+
+
+@pytest.mark.parametrize("sound_speed", [{"factor": 10}, {"mach": 0.1}], ids=["factor", "mach"])
+def test_the_height_of_a_scene_is_along_gravity(sound_speed):
+    """Fault 40: a column turned on its side, gravity with it, had 19.8 for 62.6 m/s of sound."""
+
+    def column(along, across):
+        order = sorted((along, across), key="xz".index)
+        vector = {along: -9.81, across: 0.0}
+        body = {along: 2.0, across: 0.2}
+        data = {
+            "space": "plane-strain",
+            "until": 0.1,
+            "gravity": [vector[axis] for axis in order],
+            "grid": {"cell_size": 0.05, "domain": {along: [0, 3], across: [0, 0.2]}},
+            "bodies": [
+                {
+                    "shape": {"kind": "box", "lower": [0, 0], "upper": [body[axis] for axis in order]},
+                    "material": {
+                        "law": "bingham-evp", "density": 2574, "sound_speed": sound_speed,
+                        "yield_stress": 50.0, "plastic_viscosity": 20.0,
+                    },
+                }
+            ],
+        }  # fmt: skip
+        return parse_case(data)
+
+    for case in (column("z", "x"), column("x", "z")):
+        assert case.height == pytest.approx(2.0, rel=1e-12)
+        assert case.largest_energy == pytest.approx(9.81 * 2.0, rel=1e-12)
+        assert case.sound_speed(case.bodies[0].material) == pytest.approx(62.64, rel=1e-4)
+
+
+def test_the_height_of_a_scene_on_a_slope_is_across_it():
+    """Along a periodic axis gravity has nothing to fall to; without gravity the last axis stands for it."""
+    data = {
+        "space": "plane-strain",
+        "until": 0.1,
+        "gravity": [3.0, -9.0],
+        "grid": {
+            "cell_size": 0.05,
+            "domain": {"x": [0, 1], "z": [0, 1]},
+            "faces": {"x_min": "periodic", "x_max": "periodic"},
+        },
+        "bodies": [
+            {
+                "shape": {"kind": "box", "lower": [0, 0], "upper": [1, 0.2]},
+                "material": {"law": "newtonian", "density": 1000, "viscosity": 1, "sound_speed": 10},
+            }
+        ],
+    }
+    assert parse_case(data).height == pytest.approx(0.2, rel=1e-12)
+    assert parse_case(data | {"gravity": [3.0, 0.0]}).height == pytest.approx(0.2, rel=1e-12)
+    assert parse_case(data | {"gravity": [0.0, 0.0]}).height == pytest.approx(0.2, rel=1e-12)
+    del data["grid"]["faces"]
+    tilted = (3.0 * 1.0 + 9.0 * 0.2) / (90.0**0.5)  # from the lowest corner to the highest
+    assert parse_case(data).height == pytest.approx(tilted, rel=1e-12)

@@ -51,6 +51,7 @@ def test_a_run_into_the_directory_of_its_name(case, tmp_path, capsys):
     directory = tmp_path / "runs" / "tiny"
     assert {p.name for p in directory.iterdir()} == {
         "case.json",
+        "checkpoints",
         "history.nc",
         "summary.json",
         "frames",

@@ -51,7 +51,7 @@ def fullness(simulation):
     measure = np.ones(len(p))
     o.averager.sums(measure, p.volume)
     active = o.sorting.active
-    nodes.fold(o.window.pairs, active.faces, active.mirrors, active.face_first, 0, 2, False)
+    nodes.fold(o.window.pairs, active.faces, active.mirrors, active.plane_first, 0, 2, False)
     found = o.window.pairs[:, 0] / room
     o.window.pairs[:] = 0.0
     return found[found > 0]

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from mpmkit.errors import CaseError
-from mpmkit.geometry import AnyShape, Box, Cylinder, Frustum, Mesh, Sphere, expected_count, sample
+from mpmkit.geometry import (
+    AnyShape,
+    Box,
+    Cylinder,
+    Frustum,
+    Mesh,
+    Sphere,
+    expected_count,
+    sample,
+    shared_volume,
+)
 from mpmkit.spaces import SPACES
 
 SOLID, PLANE, RADIAL = SPACES["3d"], SPACES["plane-strain"], SPACES["axisymmetric"]
@@ -117,23 +129,147 @@ def test_the_seeds_cone_has_the_published_number_of_particles():
 @pytest.mark.parametrize("shape", [CONE, ROD, BALL], ids=lambda shape: shape.kind)
 @pytest.mark.parametrize("per_axis", [1, 2, 3])
 def test_a_quarter_has_a_quarter_of_the_mass(shape, per_axis):
-    whole = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
+    all_of_it = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
     keep = ([0, 0, 0], [1, 1, 1])
     quarter = fill(shape, SOLID, 0.02, per_axis, keep=keep)
-    assert 4 * len(quarter.volume) == len(whole.volume)
+    assert 4 * len(quarter.volume) == len(all_of_it.volume)
     assert quarter.volume.sum() == pytest.approx(shape.volume(SOLID) / 4, rel=1e-12)
     assert (quarter.position > 0).all()
+    assert set(quarter.volume) == set(all_of_it.volume)  # to the bit
     count = expected_count(shape, SOLID, 0.02, [per_axis] * 3)
     assert expected_count(shape, SOLID, 0.02, [per_axis] * 3, keep) == pytest.approx(count / 4)
 
 
-def test_boxes_side_by_side_share_no_particle():
-    whole = fill(BALL, SOLID)
-    halves = [
-        fill(BALL, SOLID, keep=([low, -1, -1], [high, 1, 1])) for low, high in ((-1, 0.0025), (0.0025, 1))
-    ]
-    assert sum(len(half.volume) for half in halves) == len(whole.volume)
-    assert sum(half.volume.sum() for half in halves) == pytest.approx(BALL.volume(SOLID), rel=1e-12)
+@pytest.mark.parametrize("place", [0.005, 0.0025, 0.0431, -0.0999])
+def test_parts_side_by_side_share_no_room_and_weigh_what_they_hold(place):
+    parts = [fill(BALL, SOLID, keep=([low, -1, -1], [high, 1, 1])) for low, high in ((-1, place), (place, 1))]
+    for part, depth in zip(parts, (place + 0.1, 0.1 - place), strict=True):
+        cap = math.pi * depth**2 * (0.3 - depth) / 3
+        assert part.volume.sum() == pytest.approx(cap, rel=1e-9) or depth < 0.0025  # thinner than half a box
+    assert ((parts[0].position + parts[0].half_size)[:, 0] <= place + 1e-15).all()
+    assert ((parts[1].position - parts[1].half_size)[:, 0] >= place - 1e-15).all()
+
+
+FACES = {"a lattice plane": 0.03, "a sliver": 0.0302, "a quarter": 0.03125, "half": 0.0325, "most": 0.0347}
+
+
+@pytest.mark.parametrize("end", FACES.values(), ids=FACES)
+@pytest.mark.parametrize("start", [0.0, 0.0049, 0.0101, 0.0024, 0.0076])
+@pytest.mark.parametrize("space", [SOLID, PLANE, RADIAL], ids=lambda space: space.name)
+@pytest.mark.parametrize(("per_axis", "least", "most"), [(1, 0.5, 1.0), (2, 0.75, 1.5)])
+def test_the_boxes_of_a_block_tile_it_wherever_its_faces_are(space, start, end, per_axis, least, most):
+    """Without a factor of volume: no slivers, none wider than a cell, side by side, from face to face."""
+    block = Box(kind="box", lower=[start] * space.dim, upper=[*[0.02 + start] * (space.dim - 1), end])
+    particles = fill(block, space, per_axis=per_axis)
+    low, high = particles.position - particles.half_size, particles.position + particles.half_size
+    np.testing.assert_allclose(low.min(axis=0), block.lower, atol=1e-16)
+    np.testing.assert_allclose(high.max(axis=0), block.upper, atol=1e-16)
+    widths = 2 * particles.half_size * per_axis / 0.01
+    assert (widths >= least * (1 - 1e-9)).all()
+    assert (widths <= most * (1 + 1e-9)).all()
+    own = space.particle_volume(particles.position, 2 * particles.half_size)
+    np.testing.assert_allclose(particles.volume, own, rtol=1e-12)
+    assert own.sum() == pytest.approx(block.volume(space), rel=1e-12)
+    for axis in range(space.dim):
+        ends = np.unique(np.round(np.concatenate([low[:, axis], high[:, axis]]), 12))
+        assert len(ends) == len(np.unique(np.round(particles.position[:, axis], 12))) + 1
+
+
+@pytest.mark.parametrize(("shape", "space"), [(ROD, SOLID), (ROD, RADIAL), (CONE, SOLID), (CONE, PLANE)])
+def test_the_flat_ends_of_a_round_body_stay_where_they_are(shape, space):
+    body = shape.model_copy(update={"height": 0.2126, "base": [0.0] * (space.dim - 1) + [0.0017]})
+    particles = fill(body, space, 0.025)
+    assert (particles.position - particles.half_size)[:, -1].min() == pytest.approx(0.0017, abs=1e-15)
+    assert (particles.position + particles.half_size)[:, -1].max() == pytest.approx(0.2143, abs=1e-15)
+    assert particles.volume.sum() == pytest.approx(body.volume(space), rel=1e-12)
+    if space.radial:
+        assert (particles.position + particles.half_size)[:, 0].max() == pytest.approx(0.1, abs=1e-15)
+
+
+@each
+def test_parts_of_a_shape_add_up_to_the_points_in_them(shape, space, volume):
+    lower, upper = shape.bounds(space)
+    place = lower + np.array([0.31, 0.62, 0.83])[: space.dim] * (upper - lower)
+    points = np.random.default_rng(3).uniform(lower, upper, (200_000, space.dim))
+    weight = space.particle_volume(points, upper - lower) * shape.contains(points, space) / len(points)
+    for above in itertools.product((False, True), repeat=space.dim):
+        low, high = np.where(above, place, lower), np.where(above, upper, place)
+        inside = ((points >= low) & (points <= high)).all(axis=1)
+        found = shape.volume_between(low, high, space)
+        assert found == pytest.approx(weight[inside].sum(), abs=0.005 * volume)
+    assert shape.volume_between(lower - 1, upper + 1, space) == shape.volume(space)
+    assert shape.volume_between(upper + 1, upper + 2, space) == 0
+
+
+def test_parts_of_round_bodies_are_exact():
+    """A cap of a sphere, a segment of a cylinder, and a ring of a cone."""
+    big = np.array([1.0, 1.0, 1.0])
+    cap = BALL.volume_between(np.array([0.04, -1, -1]), big, SOLID)
+    assert cap == pytest.approx(math.pi * 0.06**2 * (0.3 - 0.06) / 3, rel=1e-10)
+    segment = 0.01 * math.acos(0.4) - 0.04 * math.sqrt(0.01 - 0.04**2)
+    assert ROD.volume_between(np.array([0.04, -1, -1]), big, SOLID) == pytest.approx(0.2 * segment, rel=1e-12)
+    # Above r = 0.07 the cone's wall reaches to z = 0.18.
+    ring = math.pi * 0.18 / 3 * (0.01 + 0.007 + 0.0049) - math.pi * 0.0049 * 0.18
+    assert CONE.volume_between(np.array([0.07, 0]), big[:2], RADIAL) == pytest.approx(ring, rel=1e-12)
+
+
+@each
+@pytest.mark.parametrize("place", [0.02, 0.036, 0.0431])
+def test_a_body_cut_off_centre_has_the_volume_of_what_is_left(shape, space, volume, place):
+    """A plane of symmetry along the last axis but one, and along the last."""
+    for axis in (space.dim - 2, space.dim - 1):
+        lower, upper = np.full(space.dim, -1.0), np.full(space.dim, 1.0)
+        lower[axis] = place
+        part = fill(shape, space, keep=(lower, upper)).volume.sum()
+        assert part == pytest.approx(shape.volume_between(lower, upper, space), rel=1e-12)
+        upper[axis], lower[axis] = place, -1.0
+        rest = fill(shape, space, keep=(lower, upper)).volume.sum()
+        assert part + rest == pytest.approx(volume, rel=1e-9)
+
+
+def whole(space):
+    return np.full(space.dim, -1.0), np.full(space.dim, 1.0)
+
+
+TOUCHING = {
+    "on a row of lattice points": (
+        Box(kind="box", lower=[0, 0], upper=[0.305, 0.2]),
+        Box(kind="box", lower=[0.305, 0], upper=[0.5, 0.2]),
+        PLANE,
+    ),
+    "discs in a lattice point": (
+        BALL_2D,
+        Sphere(kind="sphere", centre=[0.2, 0.1], radius=0.1),
+        PLANE,
+    ),
+    "a cone under a rod": (CONE, ROD.model_copy(update={"base": [0.0, 0.0, 0.3]}), SOLID),
+    "a ball on a block": (BALL, Box(kind="box", lower=[-0.1, -0.1, -0.1], upper=[0.1, 0.1, 0.0]), SOLID),
+    "side by side, bounds within each other": (
+        Sphere(kind="sphere", centre=[0.0, 0.0], radius=0.1),
+        Sphere(kind="sphere", centre=[0.12, 0.16], radius=0.1),
+        PLANE,
+    ),
+}
+
+
+@pytest.mark.parametrize("touching", TOUCHING.values(), ids=TOUCHING)
+def test_bodies_that_touch_share_no_volume(touching):
+    first, second, space = touching
+    for a, b in ((first, second), (second, first)):
+        assert shared_volume(a, b, space, [0.01] * space.dim, whole(space)) == 0
+
+
+def test_an_overlap_thinner_than_a_particle_is_measured():
+    low, high = (Box(kind="box", lower=[0, z], upper=[0.2, end]) for z, end in ((0, 0.2), (0.196, 0.3)))
+    found = shared_volume(low, high, PLANE, [0.01, 0.01], whole(PLANE))
+    assert found == pytest.approx(0.2 * 0.004, rel=1e-12)
+    assert shared_volume(low, high, PLANE, [0.01, 0.01], ([-1, -1], [0, 1])) == 0  # outside the domain
+    disc = Cylinder(kind="cylinder", radius=0.1, height=0.1, base=[0, 0, 0.196])
+    found = shared_volume(ROD, disc, SOLID, [0.01] * 3, whole(SOLID))
+    assert found == pytest.approx(math.pi * 0.01 * 0.004, rel=0.02)
+    lens = Sphere(kind="sphere", centre=[0.0, 0.298], radius=0.1)
+    exact = 2 * math.pi * 0.001**2 * (0.3 - 0.001) / 3
+    assert shared_volume(BALL_2D, lens, RADIAL, [0.01] * 2, whole(RADIAL)) == pytest.approx(exact, rel=0.1)
 
 
 def test_a_body_between_lattice_points_gets_no_particles():
@@ -271,20 +407,243 @@ def test_bad_meshes_are_refused_by_name(tmp_path):
     vertices, faces = icosphere(0.1, 1)
     flat = BLOCK_CORNERS * [1, 1, 0]
     quads = np.concatenate([BLOCK_QUADS[:, [0, 1, 2]], BLOCK_QUADS[:, [0, 2, 3]]])
-    (tmp_path / "words.stl").write_text("these are only words")
-    (tmp_path / "words.xyz").write_text("these are only words")
-    (tmp_path / "empty.obj").write_text("v 0 0 0\n")
     for file, words in {
         write(tmp_path / "open.stl", vertices, faces[1:]): "not closed",
         write(tmp_path / "flat.ply", flat, quads): "closed",
-        str(tmp_path / "words.stl"): "file",
-        str(tmp_path / "words.xyz"): "cannot read",
-        str(tmp_path / "empty.obj"): "file",
-        str(tmp_path): "cannot read",
+        text(tmp_path / "words.stl", "these are only words"): "truncated or not an STL file",
+        text(tmp_path / "words.ply", "these are only words"): "does not begin with 'ply'",
+        text(tmp_path / "words.xyz", "these are only words"): "cannot be read",
+        text(tmp_path / "points.obj", "v 0 0 0"): "no triangles",
+        text(tmp_path / "nothing.obj", ""): "is empty",
+        str(tmp_path): "a folder; it must be a file",
     }.items():
         with pytest.raises(CaseError, match=words) as refused:
             Mesh(kind="mesh", file=file).volume(SOLID)
         assert file in str(refused.value)
+
+
+def text(path, content):
+    path.write_text(content)
+    return str(path)
+
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * 0.1
+CUBE_FACES = np.concatenate([BLOCK_QUADS[:, [0, 1, 2]], BLOCK_QUADS[:, [0, 2, 3]]])
+
+
+def shells(*parts):
+    """Cubes, each with its size and shift, as one surface."""
+    corners = np.concatenate([CUBE * size + shift for size, shift in parts])
+    return corners, np.concatenate([CUBE_FACES + 8 * number for number in range(len(parts))])
+
+
+OVERLAPPING = {
+    "half in each other": shells((1, [0, 0, 0]), (1, [0.05, 0, 0])),
+    "one pokes out of the other": shells((1, [0, 0, 0]), (0.6, [0.06, 0.02, 0.02])),
+    "a corner": shells((1, [0, 0, 0]), (1, [0.095, 0.095, 0.095])),
+    "an edge, with faces in one plane": shells((1, [0, 0, 0]), (1, [0.095, 0.095, 0])),
+    "a thin slice": shells((1, [0, 0, 0]), (1, [0.0999, 0, 0])),
+}
+
+
+@pytest.mark.parametrize("surface", OVERLAPPING.values(), ids=OVERLAPPING)
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_shells_that_overlap_are_refused(tmp_path, surface, scale):
+    """Their masses would be added, or one subtracted from the other as if it were a cavity."""
+    mesh = Mesh(kind="mesh", file=write(tmp_path / "cubes.ply", *surface), scale=scale)
+    with pytest.raises(
+        CaseError, match=r"cubes\.ply, but its surface crosses itself, or shells of it overlap, near"
+    ):
+        mesh.volume(SOLID)
+
+
+def test_a_surface_that_crosses_itself_is_refused(tmp_path):
+    """A block of which one end is turned over: its walls cross half way."""
+    corners = BLOCK_CORNERS.copy()
+    corners[[1, 3, 5, 7]] = corners[[3, 1, 7, 5]]
+    mesh = Mesh(kind="mesh", file=write(tmp_path / "bow.ply", corners, CUBE_FACES))
+    with pytest.raises(CaseError, match="crosses itself"):
+        mesh.volume(SOLID)
+    corners[[1, 5], 1] *= 1.5  # so that the two halves do not cancel
+    mesh = Mesh(kind="mesh", file=write(tmp_path / "bow_tie.ply", corners, CUBE_FACES))
+    with pytest.raises(CaseError, match="crosses itself"):
+        mesh.volume(SOLID)
+
+
+@pytest.mark.parametrize("shift", [[0.1, 0.03, 0.02], [0.1001, 0, 0], [0.3, 0, 0]])
+def test_shells_that_touch_or_stand_apart_are_added(tmp_path, shift):
+    file = write(tmp_path / "cubes.ply", *shells((1, [0, 0, 0]), (1, shift)))
+    assert Mesh(kind="mesh", file=file).volume(SOLID) == pytest.approx(0.002, rel=1e-6)
+
+
+def obj(corners, faces, line="f {} {} {}"):
+    lines = ["v " + " ".join(map(str, corner)) for corner in corners]
+    return "\n".join([*lines, *(line.format(*(face + 1)) for face in faces), ""])
+
+
+def ply(names, corners, *, elements="", rows="", face="property list uchar int vertex_indices"):
+    head = "".join(f"property float {name}\n" for name in names)
+    body = "".join(" ".join(map(str, row)) + "\n" for row in corners)
+    ends = " 7" * (face.count("property") - 1) + "\n"
+    body += rows + "".join("3 " + " ".join(map(str, triangle)) + ends for triangle in CUBE_FACES)
+    kinds = f"element vertex 8\n{head}{elements}element face 12\n{face}\n"
+    return f"ply\nformat ascii 1.0\n{kinds}end_header\n{body}"
+
+
+def stl(word=str.lower, before_the_end=""):
+    facets = "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in CUBE[face])
+        + "endloop\nendfacet\n"
+        for face in CUBE_FACES
+    )
+    return word(f"solid cube\n{facets}{before_the_end}endsolid cube\n")
+
+
+NORMALS = np.full((8, 3), 9)
+GOOD = {
+    "normals.obj": obj(CUBE, CUBE_FACES, "f {}//1 {}//1 {}//1").replace("f", "vn 0 0 1\nf", 1),
+    "texture.obj": obj(CUBE, CUBE_FACES, "f {}/1 {}/1 {}/1").replace("f", "vt 0 0\nf", 1),
+    "both.obj": obj(CUBE, CUBE_FACES, "f {}/1/1 {}/1/1 {}/1/1").replace("f", "vt 0 0\nvn 0 0 1\nf", 1),
+    "relative.obj": obj(CUBE, CUBE_FACES - 9),
+    "comments.obj": "# a cube\no cube\n"
+    + obj(CUBE, CUBE_FACES).replace("f ", "s off\nusemtl red # f 1\nf ", 1),
+    "goes_on.obj": obj(CUBE, CUBE_FACES, "f {} {} \\\n {}"),
+    "colours.obj": obj(np.hstack([CUBE, NORMALS]), CUBE_FACES),
+    "quads.obj": obj(CUBE, BLOCK_QUADS, "f {} {} {} {}"),
+    "capitals.stl": stl(str.upper),
+    "blank_line.stl": stl(before_the_end="\n\n"),
+    "normals_first.ply": ply(["nx", "ny", "nz", "x", "y", "z"], np.hstack([NORMALS, CUBE])),
+    "backwards.ply": ply(["z", "y", "x"], CUBE[:, ::-1]),
+    "colours.ply": ply(
+        ["x", "y", "z", "red"],
+        np.hstack([CUBE, NORMALS[:, :1]]),
+        face="property list uchar int vertex_indices\nproperty uchar red",
+    ),
+    "edges.ply": ply(
+        "xyz", CUBE, elements="element edge 1\nproperty int vertex1\nproperty int vertex2\n", rows="0 1\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_files_as_programs_write_them_are_read(tmp_path, name):
+    pytest.importorskip("igl")
+    mesh = Mesh(kind="mesh", file=text(tmp_path / name, GOOD[name]))
+    assert mesh.volume(SOLID) == pytest.approx(0.001, rel=1e-6)
+    np.testing.assert_allclose(mesh.bounds(SOLID), [[0, 0, 0], [0.1, 0.1, 0.1]], atol=1e-8)
+
+
+def test_axes_of_a_ply_file_go_by_their_names(tmp_path):
+    pytest.importorskip("igl")
+    mesh = Mesh(kind="mesh", file=text(tmp_path / "zyx.ply", ply(["z", "y", "x"], CUBE * [3, 2, 1])))
+    np.testing.assert_allclose(mesh.bounds(SOLID)[1], [0.1, 0.2, 0.3], rtol=1e-6)
+
+
+def test_relative_corners_count_from_the_face_that_names_them(tmp_path):
+    pytest.importorskip("igl")
+    cubes = obj(CUBE, CUBE_FACES - 9) + obj(CUBE + 1, CUBE_FACES - 9)
+    mesh = Mesh(kind="mesh", file=text(tmp_path / "two.obj", cubes))
+    assert mesh.volume(SOLID) == pytest.approx(0.002, rel=1e-9)
+    assert mesh.contains(CUBE.mean(axis=0)[None] + [[0.0], [1.0]], SOLID).all()
+
+
+def test_polygons_of_more_than_four_corners_are_not_dropped(tmp_path):
+    """A prism on a pentagon, and a cube beside it."""
+    pytest.importorskip("igl")
+    angle = 2 * math.pi * np.arange(5) / 5
+    ring = 0.1 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1) + 1
+    corners = np.concatenate([CUBE, ring, ring + np.array([0, 0, 0.2])])
+    content = obj(corners, CUBE_FACES) + "f 9 10 11 12 13\nf 14 15 16 17 18\n"
+    content += "".join(f"f {9 + i} {9 + (i + 1) % 5} {14 + (i + 1) % 5} {14 + i}\n" for i in range(5))
+    mesh = Mesh(kind="mesh", file=text(tmp_path / "prism.obj", content))
+    exact = 0.001 + 5 / 2 * 0.01 * math.sin(2 * math.pi / 5) * 0.2
+    assert mesh.volume(SOLID) == pytest.approx(exact, rel=1e-12)
+
+
+DAMAGED = {
+    "truncated.stl": (stl()[:-300], "truncated: 'endsolid' is missing"),
+    "truncated.ply": (ply("xyz", CUBE)[:-40], "truncated: its head announces 20 lines, but it has 1"),
+    "head.ply": (ply("xyz", CUBE)[:60], "truncated or damaged: 'end_header' is missing"),
+    "beyond.obj": (obj(CUBE, CUBE_FACES) + "f 1 2 99\n", "its line 21 names corner 99, but it has 8 corners"),
+    "zero.obj": (obj(CUBE, CUBE_FACES) + "f 0 1 2\n", "its line 21 is 'f 0 1 2'; it must be"),
+    "before.obj": (obj(CUBE, CUBE_FACES) + "f -1 -2 -9\n", "its line 21 is 'f -1 -2 -9'; it must be"),
+    "words.obj": ("v 0 0 up\n" + obj(CUBE, CUBE_FACES), "its line 1 is 'v 0 0 up'; it must be"),
+    "beyond.ply": (ply("xyz", CUBE).replace("3 4 7 5", "3 4 7 55"), "name corners that it does not have"),
+    "nan.obj": (obj(CUBE, CUBE_FACES).replace("v 0.1 0.1 0.1", "v 0.1 0.1 nan"), "not finite numbers"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_file_is_told_what_is_wrong_with_it(tmp_path, name):
+    pytest.importorskip("igl")
+    content, words = DAMAGED[name]
+    with pytest.raises(CaseError) as refused:
+        Mesh(kind="mesh", file=text(tmp_path / name, content)).volume(SOLID)
+    assert name in str(refused.value)
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj", "off", "vtk", "msh"])
+def test_a_file_cut_anywhere_gets_a_sentence(tmp_path, kind):
+    """Or is read where nothing is missing but its last letters; never a traceback."""
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("igl")
+    whole = tmp_path / f"cube.{kind}"
+    if kind in ("vtk", "msh"):  # the second is Ansys'
+        meshio.Mesh(CUBE, [("triangle", CUBE_FACES)]).write(whole)
+    else:
+        write(whole, CUBE, CUBE_FACES)
+    content = whole.read_bytes()
+    for end in np.linspace(1, len(content) - 3, 40).astype(int):
+        part = tmp_path / f"{end}.{kind}"
+        part.write_bytes(content[:end])
+        with pytest.raises(CaseError, match=f"{end}.{kind}, but"):
+            Mesh(kind="mesh", file=str(part)).volume(SOLID)
+
+
+def test_a_truncated_binary_file_is_called_truncated(tmp_path):
+    content = Path(write(tmp_path / "ball.stl", *icosphere(0.1, 1))).read_bytes()
+    (tmp_path / "part.stl").write_bytes(content[:-30])
+    with pytest.raises(CaseError, match=r"part\.stl, but it is truncated"):
+        Mesh(kind="mesh", file=str(tmp_path / "part.stl")).volume(SOLID)
+
+
+def test_cells_that_are_no_part_of_a_surface_are_refused_by_name(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("igl")
+    cells = [("triangle", CUBE_FACES), ("tetra", np.array([[0, 1, 2, 4]]))]
+    meshio.Mesh(CUBE, cells).write(tmp_path / "solid.vtu")
+    with pytest.raises(
+        CaseError, match=r"solid\.vtu, but it has cells of the kind 'tetra', which are not used"
+    ):
+        Mesh(kind="mesh", file=str(tmp_path / "solid.vtu")).volume(SOLID)
+    meshio.Mesh(CUBE, [("line", np.array([[0, 1]])), cells[0]]).write(tmp_path / "lines.vtu")
+    assert Mesh(kind="mesh", file=str(tmp_path / "lines.vtu")).volume(SOLID) == pytest.approx(0.001)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_pipe_or_a_device_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe.stl")
+    (tmp_path / "link.stl").symlink_to("/dev/zero")
+    for name in ("pipe.stl", "link.stl"):
+        with pytest.raises(CaseError, match=f"{name}, but that is a pipe or a device; it must be a file"):
+            Mesh(kind="mesh", file=str(tmp_path / name)).volume(SOLID)
+
+
+def test_a_mesh_has_a_largest_size(tmp_path):
+    with open(tmp_path / "huge.stl", "wb") as file:
+        file.truncate(2**30 + 1)  # a hole: it takes no room
+    with pytest.raises(CaseError, match=r"huge\.stl, but it has 1 GiB; it may have at most 1 GiB"):
+        Mesh(kind="mesh", file=str(tmp_path / "huge.stl")).volume(SOLID)
+
+
+def test_a_part_of_a_mesh_is_exact(tmp_path):
+    mesh = Mesh(kind="mesh", file=write(tmp_path / "block.ply", BLOCK_CORNERS, CUBE_FACES))
+    low, high = np.array([0.013, 0.0, 0.07]), np.array([0.1, 0.13, 0.21])
+    assert mesh.volume_between(low, high, SOLID) == pytest.approx(np.prod(high - low), rel=1e-6)
+    part = fill(mesh, SOLID, keep=(np.array([-1, 0.03, -1]), np.ones(3)))
+    assert part.volume.sum() == pytest.approx(0.1 * 0.17 * 0.3, rel=1e-6)
 
 
 def test_a_rewritten_mesh_is_read_again(tmp_path, monkeypatch):
@@ -300,5 +659,7 @@ def test_a_rewritten_mesh_is_read_again(tmp_path, monkeypatch):
 def test_without_its_libraries_a_mesh_says_what_to_install(tmp_path, monkeypatch, library):
     file = write(tmp_path / "ball.stl", *icosphere(1.0, 1))
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(CaseError, match=r"pip install 'mpmkit\[mesh\]'"):
+    with pytest.raises(
+        CaseError, match=r"pip install libigl trimesh, or pip install '\.\[mesh\]' in a clone"
+    ):
         Mesh(kind="mesh", file=file).volume(SOLID)

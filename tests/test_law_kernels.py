@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tensors import random_gradients, symmetric
 
-from mpmkit.contracts import Motion
+from mpmkit.contracts import Kinematics
 from mpmkit.kernels import elastic
 from mpmkit.kernels.compile import CHUNK
 from mpmkit.registry import installed
@@ -82,9 +82,9 @@ def test_cauchy_stress_of_neo_hooke():
     F = F[np.linalg.det(F) > 0.1]
     J, E, nu = np.linalg.det(F), 100.0, 0.3
     G, lame = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))
-    motion = Motion(np.zeros_like(F), J, np.zeros_like(J), 1.0, deformation_gradient=F)
+    kinematics = Kinematics(np.zeros_like(F), J, np.zeros_like(J), 1.0, deformation_gradient=F)
     stress = np.full((len(F), 6), np.nan)
-    LAWS["neo-hookean"](youngs_modulus=E, poisson_ratio=nu).update_stress(motion, {}, 0.1, stress)
+    LAWS["neo-hookean"](youngs_modulus=E, poisson_ratio=nu).update_stress(kinematics, {}, 0.1, stress)
     identity = np.eye(3)
     expected = [
         (G * (f @ f.T - identity) + lame * np.log(j) * identity) / j for f, j in zip(F, J, strict=True)

@@ -31,15 +31,17 @@ def rows(shape):
 
 
 def mirrors(shape, faces):
-    """(ghost, image, wall) of the nodes behind the faces of a window of ``block``; the first of each face."""
+    """(ghost, image, wall) of the nodes behind the faces of a window of ``block``; first of each plane."""
     index = np.arange(int(np.prod(shape))).reshape(shape)
     found, first = [np.empty((0, 3), dtype=np.int64)], [0]
     for axis in range(len(faces)):
-        for upper in (False, True):
-            for _, ghost, image in images(faces, axis):
-                if (ghost > 1) == upper:
-                    planes = [plane(index, axis, k).ravel() for k in (ghost, image, (ghost + image) // 2)]
-                    found.append(np.stack(planes, axis=1))
+        n = shape[axis]
+        of_ghost = {ghost: image for _, ghost, image in images(faces, axis)}
+        for ghost in (0, n - 1, n - 2):
+            if ghost in of_ghost:
+                image = of_ghost[ghost]
+                planes = [plane(index, axis, k).ravel() for k in (ghost, image, (ghost + image) // 2)]
+                found.append(np.stack(planes, axis=1))
             first.append(sum(map(len, found)))
     return np.concatenate(found), np.array(first)
 
@@ -181,38 +183,45 @@ def test_averages_at_nodes(faces):
 
 
 def constrained(velocity, change, contact, faces, friction, walls, solved):
-    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` has a bit an axis."""
+    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` has a bit an axis.
+
+    All walls at once: what each pushes is the velocity towards it before any of them acts.
+    """
     dim = velocity.shape[-1]
-    for axis in range(dim):
-        for side in range(2):
-            code, k, inward = faces[axis, side], int(walls[axis, side]), 1 - 2 * side
-            v, dv = plane(velocity, axis, k), plane(change, axis, k)
-            if code == MIRROR:
-                v[..., axis] = 0.0
-                if solved:
-                    dv[..., axis] = 0.0
-            elif code == STICK:
-                v[...] = 0.0
-                if solved:
-                    dv[...] = 0.0
-            elif code == FRICTION and not solved:
-                v[..., axis][plane(contact, axis, k) >> axis & 1 > 0] = 0.0
-            elif code == FRICTION:
-                push = np.maximum(-inward * v[..., axis], 0.0)
-                into = push > 0
-                tangent = v.copy()
-                tangent[..., axis] = 0.0
-                slip = np.linalg.norm(tangent, axis=-1)
-                keep = 1 - friction[axis, side] * push / np.where(slip > 0, slip, 1.0)
-                end = np.maximum(keep, 0.0)[..., None] * tangent
-                dv[into] += (end - v)[into]
-                v[into] = end[into]
+    start, grips = velocity.copy(), []
+    for axis, side in np.ndindex(dim, 2):
+        code, k, inward = faces[axis, side], int(walls[axis, side]), 1 - 2 * side
+        v = plane(velocity, axis, k)
+        if code == MIRROR:
+            v[..., axis] = 0.0
+        elif code == STICK:
+            v[...] = 0.0
+        elif code == FRICTION and not solved:
+            v[..., axis][plane(contact, axis, k) >> axis & 1 > 0] = 0.0
+        elif code == FRICTION:
+            push = np.maximum(-inward * plane(start, axis, k)[..., axis], 0.0)
+            v[..., axis][push > 0] = 0.0
+            grips.append((axis, k, friction[axis, side] * push))
+    for axis, k, grip in grips:
+        v = plane(velocity, axis, k)
+        slip = np.linalg.norm(np.delete(v, axis, axis=-1), axis=-1)
+        keep = np.maximum(1 - grip / np.where(slip > 0, slip, 1.0), 0.0)[..., None]
+        v *= np.where(np.arange(dim) == axis, 1.0, keep)
+    if solved:
+        change += velocity - start
+        for axis, side in np.ndindex(dim, 2):
+            held = plane(change, axis, int(walls[axis, side]))
+            if faces[axis, side] == MIRROR:
+                held[..., axis] = 0.0
+            elif faces[axis, side] == STICK:
+                held[...] = 0.0
 
 
 @pytest.mark.parametrize(
     "faces",
     [f for f in FACES_2D + FACES_3D if not any(PERIODIC in pair for pair in f)]
-    + [[[FRICTION, FRICTION], [FRICTION, FRICTION], [FRICTION, FRICTION]], [[STICK, STICK], [STICK, MIRROR]]],
+    + [[[FRICTION, FRICTION], [FRICTION, FRICTION], [FRICTION, FRICTION]], [[STICK, STICK], [STICK, MIRROR]]]
+    + [[[FRICTION, FRICTION], [MIRROR, STICK], [FRICTION, MIRROR]]],
     ids=str,
 )
 def test_momentum_equation_and_conditions_on_the_faces(faces):
@@ -261,8 +270,8 @@ def test_friction_never_turns_the_slip_round():
     for i in range(3):
         records[3 * i, 1:3] = slip[i], into[i]
     behind = np.array([[k + 1, k + 2, k] for k in (0, 3, 6)])  # ghosts and images that nobody asks for
-    of_face = np.array([0, 0, 0, 3, 3])
-    nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, of_face, friction, 1.0)
+    plane_first = np.array([0, 0, 0, 0, 3, 3, 3])
+    nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, plane_first, friction, 1.0)
     np.testing.assert_allclose(records[[0, 3, 6], 1], [0.5, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 2], [0.0, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 3], [-0.5, -0.2, 0.0], atol=1e-15)

@@ -18,7 +18,6 @@ from mpmkit.output import (
     History,
     RunDirectory,
     Variable,
-    first_crossing,
     open_log,
     read_frame,
     read_frames,
@@ -26,6 +25,7 @@ from mpmkit.output import (
     write_json,
 )
 from mpmkit.output import history as history_module
+from mpmkit.output.summary import state_at_end
 from mpmkit.output.variables import tensor_components
 from mpmkit.spaces import SPACES
 
@@ -165,11 +165,11 @@ class TestFrames:
         assert time == 1 / 3
         assert path.name == "frame_000012.vtu"
         frame = read_frame(path)
-        axes = [0, 2] if space.dim == 2 else [0, 1, 2]
+        axes = list(range(space.dim))
         np.testing.assert_array_equal(frame["position"][:, axes], position)
         np.testing.assert_array_equal(frame["velocity"][:, axes], fields["velocity"])
         if space.dim == 2:
-            assert not frame["position"][:, 1].any()
+            assert not frame["position"][:, 2].any()  # in the plane that a viewer shows
         for scalar in ("half_size", "speed", "body", "particle"):
             np.testing.assert_array_equal(frame[scalar], fields[scalar])
         assert frame["body"].dtype == np.int32
@@ -289,43 +289,51 @@ class TestRunDirectory:
 
 
 class TestSummary:
-    def test_first_crossing_is_interpolated(self):
-        assert first_crossing([0, 1, 2, 3], [0.2, 0.4, 0.6, 0.4], 0.5) == pytest.approx(1.5)
-        assert first_crossing([0, 1, 2], [0.2, 0.5, 0.6], 0.5) == pytest.approx(1.0)
-        assert first_crossing([0, 1, 2], [0.2, np.nan, 0.6], 0.5) is None
-
-    @pytest.mark.parametrize("values", [[], [0.2], [0.2, 0.4], [0.6, 0.7]])
-    def test_what_never_happened_is_none(self, values):
-        assert first_crossing(range(len(values)), values, 0.5) is None
-
     def summary(self, history: History, **changes) -> dict:
         given = {"particles": 10, "particle_steps": 200, "steps": 20, "wall_time": 4.0}
         given |= {"stopped_because": "finished", "plugins": {}}
+        given |= {"t500": 0.15, "at_rest_since": None, "spread_rate": 0.3}
         return summarise(history.dataset(), **{**given, **changes})
 
     def test_keys_and_values(self):
         summary = self.summary(small_history())
-        keys = "t500 final_spread final_slump final_height simulated_time particles steps wall_time"
-        assert list(summary) == [*keys.split(), "particle_steps_per_second", "stopped_because", "plugins"]
-        assert summary["t500"] == pytest.approx(0.1 + 0.1 * 2 / 3)
+        keys = "t500 final_spread final_slump final_height final_spread_rate at_rest_since simulated_time "
+        keys += "particles steps wall_time particle_steps_per_second stopped_because plugins units"
+        assert list(summary) == keys.split()
+        assert summary["t500"] == 0.15
+        assert summary["at_rest_since"] is None
         assert summary["final_spread"] == 0.6
+        assert summary["final_spread_rate"] == 0.3
         assert summary["simulated_time"] == pytest.approx(0.2)
         assert summary["final_height"] is None  # not a column of this history
         assert summary["particle_steps_per_second"] == 50.0
 
+    def test_every_number_has_a_unit(self):
+        summary = self.summary(small_history())
+        numbers = summary.keys() - {"stopped_because", "plugins", "units"}
+        assert summary["units"].keys() == numbers
+        assert summary["units"]["t500"] == summary["units"]["at_rest_since"] == "s"
+        assert summary["units"]["final_spread"] == "m"
+
     def test_what_a_guard_refused_is_not_summarised(self):
-        """A particle thrown out in the last row makes no T500 and no final shape."""
-        thrown_out = self.summary(small_history(), stopped_because="particle-outside")
-        assert thrown_out["t500"] is thrown_out["final_spread"] is None
+        """A particle thrown out in the last row makes no final shape, and nothing is at rest."""
+        thrown_out = self.summary(small_history(), stopped_because="particle-outside", at_rest_since=0.1)
+        assert thrown_out["at_rest_since"] is thrown_out["final_spread"] is None
+        assert thrown_out["final_spread_rate"] is None
         assert thrown_out["simulated_time"] == pytest.approx(0.2)
-        later = self.summary(small_history((0.2, 0.3, 0.6, 90.0)), stopped_because="particle-outside")
-        assert later["t500"] == pytest.approx(0.1 + 0.1 * 2 / 3)
-        assert later["final_spread"] is None
+        assert state_at_end(thrown_out) is None
         assert self.summary(small_history(), stopped_because="interrupted")["final_spread"] == 0.6
 
     def test_of_a_run_that_never_started(self):
-        summary = self.summary(small_history(()), wall_time=0.0)
+        summary = self.summary(small_history(()), wall_time=0.0, t500=None)
         assert summary["t500"] is summary["final_spread"] is summary["particle_steps_per_second"] is None
+
+    def test_the_state_at_the_end_in_words(self):
+        words = {(1.234, 0.0): "at rest since t = 1.23 s", (None, 0.4583): "still spreading, 458 mm/s"}
+        words |= {(None, None): "still moving", (None, -0.2): "still moving"}
+        for (since, rate), sentence in words.items():
+            summary = self.summary(small_history(), at_rest_since=since, spread_rate=rate)
+            assert state_at_end(summary) == sentence
 
 
 class TestLog:

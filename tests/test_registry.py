@@ -7,10 +7,14 @@ import textwrap
 
 import pytest
 
+from mpmkit.bench.timing import timed
 from mpmkit.case import parse_case
 from mpmkit.cli import main
-from mpmkit.errors import CaseError
+from mpmkit.errors import CaseError, PluginStop
 from mpmkit.registry import discover, installed
+from mpmkit.rheology.refit import with_law
+from mpmkit.solver.simulation import Simulation
+from mpmkit.study.work import run_member
 
 LAW = """
 import numpy as np
@@ -20,7 +24,7 @@ class Slurry(GeneralisedNewtonianLaw):
     '''mu = tau0 / (γ̇ + γ̇0) + mu_p, a plastic regularised by a shear rate.'''
 
     name = "slurry"
-    api_version = 1
+    api_version = 2
     citation = "nobody, nowhere (2024)"
 
     yield_stress: float = quantity("Pa", "yield stress", ge=0)
@@ -38,13 +42,44 @@ def mpmkit_laws():
 BROKEN = {
     "import error": ("import nothing_of_this_name\n", "No module named 'nothing_of_this_name'"),
     "exit at import": ("raise SystemExit(3)\n", "SystemExit: 3"),
+    "exit without a word": ("raise SystemExit\n", "SystemExit"),
+    "skipped at import": (
+        "import pytest\npytest.importorskip('no_such_module')\n",
+        "Skipped: could not import",
+    ),
+    "exception of its own": (
+        "class Mute(BaseException):\n    def __str__(self):\n        return 1 / 0\nraise Mute\n",
+        "Mute",
+    ),
+    "exit in a hook": (LAW.replace("return [Slurry]", "raise SystemExit(0)"), "SystemExit: 0"),
     "syntax error": ("def f(:\n", "SyntaxError"),
     "misspelt hook": (LAW.replace("def mpmkit_laws", "def mpmkit_law"), "did you mean mpmkit_laws?"),
-    "API version": (
-        LAW.replace("api_version = 1", "api_version = 2"),
-        "written for API version 2, this is version 1",
+    "newer version": (
+        LAW.replace("api_version = 2", "api_version = 3"),
+        "it is written for version 3 of the plug-in contracts; this mpmkit supports versions 1 to 2; "
+        "update mpmkit",
     ),
-    "no API version": (LAW.replace("    api_version = 1\n", ""), "Slurry has no 'api_version'"),
+    "older version": (
+        LAW.replace("api_version = 2", "api_version = 0"),
+        "it is written for version 0 of the plug-in contracts; this mpmkit supports versions 1 to 2; "
+        "what has changed: docs/plugins.md#versions",
+    ),
+    "version as text": (
+        LAW.replace("api_version = 2", 'api_version = "1"'),
+        "its api_version is '1', which is text; it must be a whole number, such as 2",
+    ),
+    "version as truth value": (
+        LAW.replace("api_version = 2", "api_version = True"),
+        "its api_version is True, which is of type bool; it must be a whole number, such as 2",
+    ),
+    "version with a point": (
+        LAW.replace("api_version = 2", "api_version = 1.0"),
+        "its api_version is 1.0, which is of type float; it must be a whole number, such as 2",
+    ),
+    "no version": (
+        LAW.replace("    api_version = 2\n", ""),
+        "Slurry has no 'api_version'; for this mpmkit write api_version = 2",
+    ),
     "no subclass": (LAW.replace("return [Slurry]", "return [int]"), "not a subclass of ConstitutiveLaw"),
     "no list": (LAW.replace("return [Slurry]", "return Slurry"), "must return a list of classes"),
     "registers nothing": ("x = 1\n", "registers nothing"),
@@ -158,7 +193,7 @@ def test_a_bad_plugin_leaves_the_good_ones_of_its_module(distribution):
     assert [p.distribution for p in registry.problems] == ["half-pack"]
 
 
-@pytest.mark.parametrize("name", ["bingham", "slurry"])
+@pytest.mark.parametrize("name", ["bingham", "bingham-evp", "slurry"])
 def test_two_of_one_name_are_both_refused(name, distribution):
     rivals = {"one-pack", "two-pack"} if name == "slurry" else {"one-pack", "mpmkit"}
     for rival in rivals - {"mpmkit"}:
@@ -169,8 +204,37 @@ def test_two_of_one_name_are_both_refused(name, distribution):
     with pytest.raises(CaseError, match=f'law is "{name}"; it must be') as refused:
         parse_case(case(name), registry=registry)
     for rival in rivals:
-        assert f"of '{rival}'" in str(refused.value)
+        assert str(refused.value).count(f"of '{rival}'") == 1
+    assert f"law '{name}' is registered by" in str(refused.value)
+    assert "did you mean" not in str(refused.value)
     parse_case(case("newtonian", bodies=_newtonian()), registry=registry)
+
+
+def test_a_misspelt_name_that_two_plugins_have(distribution):
+    """That name was meant, and the clash is the reason; not another name that is near."""
+    distribution("one-pack", wet=LAW.replace('"slurry"', '"bingham-evp"'))
+    with pytest.raises(CaseError) as refused:
+        parse_case(case("bingham-evpp"), registry=discover())
+    assert "did you mean \"bingham-evp\"?; law 'bingham-evp' is registered by" in str(refused.value)
+    assert "uninstall all but one of them" in str(refused.value)
+
+
+def test_a_problem_of_another_kind_is_not_the_reason(distribution):
+    distribution(
+        "one-pack", usf=LAW.replace("api_version = 2", "api_version = 9").replace("slurry", "usf-ish")
+    )
+    with pytest.raises(CaseError, match="plug-ins that were not loaded are") as refused:
+        parse_case(case("bingham", scheme={"order": "usf-ish"}), registry=discover())
+    assert 'did you mean "usf"?' in str(refused.value)
+
+
+def test_a_name_that_clashes_is_taken(distribution, tmp_path, capsys):
+    distribution("one-pack", wet=LAW.replace('"slurry"', '"bingham-evp"'))
+    assert status("new-plugin", "bingham-evp", "--kind", "law", "--out", tmp_path / "new") == 2
+    assert "there is a constitutive law 'bingham-evp' already: law 'bingham-evp' is registered by" in (
+        capsys.readouterr().err
+    )
+    assert not (tmp_path / "new").exists()
 
 
 def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
@@ -179,7 +243,7 @@ def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
 
         class Own(VolumetricTreatment):
             name = "{name}"
-            api_version = 1
+            api_version = 2
             citation = "nobody"
 
             def average(self, ops, field):
@@ -302,6 +366,117 @@ def test_a_law_that_fails_in_a_run_is_named_with_its_distribution(
     assert json.loads((tmp_path / "run" / "summary.json").read_text())["stopped_because"] == "plug-in-error"
     path.write_text(json.dumps(case("mud")), encoding="utf-8")
     assert status("run", path, "--out", tmp_path / "other", "--quiet") == 0
+
+
+def failing(raised, method="largest_viscosity", after=0):
+    """A law one of whose methods raises something, from some call on."""
+    body = (
+        f"    def {method}(self, *given):\n"
+        f"        asked.append(1)\n"
+        f"        if len(asked) > {after}:\n"
+        f"            raise {raised}\n"
+        f"        return super().{method}(*given)\n\n"
+    )
+    law = LAW.replace("    def apparent_viscosity", body + "    def apparent_viscosity")
+    imports = "import sys\nimport numpy as np\nfrom mpmkit.errors import CaseError\nasked = []"
+    return law.replace("import numpy as np", imports)
+
+
+RAISED = {
+    "KeyError('surface')": "raised KeyError: 'surface' (faulty_pack_slurry.py, line ",
+    "TypeError('I am a bug')": "raised TypeError: I am a bug (faulty_pack_slurry.py, line ",
+    "ValueError('I am a bug')": "raised ValueError: I am a bug (faulty_pack_slurry.py, line ",
+    "CaseError('the case is wrong')": "raised CaseError: the case is wrong (faulty_pack_slurry.py, line ",
+    "SystemExit(0)": "raised SystemExit: 0 (faulty_pack_slurry.py, line ",
+}
+
+
+@pytest.mark.parametrize("raised", RAISED)
+@pytest.mark.parametrize("command", ["run", "plan", "stability"])
+def test_a_law_that_fails_while_a_case_is_validated_is_named(
+    command, raised, distribution, tmp_path, capsys, monkeypatch
+):
+    """In one sentence, with status 3, the same of every command; nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    distribution("faulty-pack", slurry=failing(raised))
+    (tmp_path / "case.json").write_text(json.dumps(case()), encoding="utf-8")
+    assert status(command, "case.json") == 3
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert sentence.startswith(f"mpmkit: the plug-in 'slurry' (law, of faulty-pack) {RAISED[raised]}")
+    assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize("command", ["plan", "stability"])
+def test_a_law_that_fails_in_a_trial_is_named_by_every_command(
+    command, distribution, tmp_path, capsys, monkeypatch
+):
+    """Neither for a case that cannot be run nor for a step that is too long."""
+    monkeypatch.chdir(tmp_path)
+    distribution("faulty-pack", slurry=failing("KeyError('surface')", "update_stress", after=6))
+    (tmp_path / "case.json").write_text(json.dumps(case() | {"until": 0.05}), encoding="utf-8")
+    assert status(command, "case.json") == 3
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert sentence.startswith("mpmkit: stopped at step ")
+    assert (
+        f"the plug-in 'slurry' (law, of faulty-pack) {RAISED['KeyError(' + repr('surface') + ')']}"
+        in sentence
+    )
+
+
+def test_a_law_that_ends_the_process_ends_its_run(distribution, tmp_path, capsys):
+    """With status 3 and a word, where it was 0 and none; what was computed is kept."""
+    distribution("faulty-pack", slurry=failing("SystemExit(0)", "update_stress", after=6))
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(case() | {"until": 0.05}), encoding="utf-8")
+    assert status("run", path, "--out", tmp_path / "run", "--quiet") == 3
+    assert "the plug-in 'slurry' (law, of faulty-pack) raised SystemExit: 0" in capsys.readouterr().err
+    assert json.loads((tmp_path / "run" / "summary.json").read_text())["stopped_because"] == "plug-in-error"
+    assert (tmp_path / "run" / "history.nc").exists()
+
+
+def test_a_law_that_ends_the_process_ends_its_member_of_a_study(distribution):
+    distribution("faulty-pack", slurry=failing("SystemExit(0)", "update_stress", after=6))
+    outcome = run_member(case() | {"name": "member", "until": 0.05}, threads=1)
+    assert outcome.fate == "plug-in-error"
+    assert "the plug-in 'slurry' (law, of faulty-pack) raised SystemExit: 0" in outcome.sentence
+
+
+def test_a_law_that_fails_as_its_parameters_are_fitted_is_named(distribution):
+    """A curve is asked for where a study or ``stability`` puts another law in the place of one."""
+    raising = LAW.replace("return self.yield_stress /", "raise ValueError('no curve')\n        return 1 /")
+    distribution("faulty-pack", slurry=raising)
+    (body,) = case()["bodies"]
+    said = r"the plug-in 'slurry' \(law, of faulty-pack\) raised ValueError: no curve"
+    with pytest.raises(PluginStop, match=said):
+        with_law(body["material"], "herschel-bulkley", installed())
+
+
+def test_a_law_that_fails_in_a_benchmark_is_named(distribution):
+    distribution("faulty-pack", slurry=failing("KeyError('surface')", "update_stress", after=3))
+    with pytest.raises(PluginStop, match=r"'slurry' \(law, of faulty-pack\) raised KeyError: 'surface'"):
+        timed(Simulation(parse_case(case())), "of the tests", threads=1, seconds=0.1)
+
+
+def test_what_a_validator_of_a_plugin_refuses_is_the_users(distribution, tmp_path, capsys):
+    """A ValueError of pydantic's validators is how a plug-in says that a parameter is wrong."""
+    law = LAW.replace("import numpy as np", "import numpy as np\nfrom pydantic import field_validator")
+    check = (
+        "    @field_validator('yield_stress')\n    @classmethod\n    def _even(cls, value):\n"
+        "        if value % 2:\n            raise ERROR\n        return value\n\n"
+    )
+    law = law.replace("    def apparent_viscosity", check + "    def apparent_viscosity")
+    distribution("careful-pack", slurry=law.replace("ERROR", "ValueError('it must be even')"))
+    distribution("faulty-pack", mud=law.replace('"slurry"', '"mud"').replace("ERROR", "KeyError('surface')"))
+    path = tmp_path / "case.json"
+    for name, expected, said in (
+        ("slurry", 2, "it must be even"),
+        ("mud", 3, "the plug-in 'mud' (law, of faulty-pack) raised KeyError: 'surface'"),
+    ):
+        data = case(name)
+        data["bodies"][0]["material"]["yield_stress"] = 101
+        path.write_text(json.dumps(data), encoding="utf-8")
+        assert status("plan", path) == expected
+        assert said in capsys.readouterr().err
 
 
 def _newtonian():

@@ -88,8 +88,7 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
         }
         history.record(time, row)
         if step % 10 == 0:
-            half_size = np.full((len(start), 3), spacing / 2)
-            half_size[:, [0, 2]] *= scale[[0, -1]]
+            half_size = spacing / 2 * scale * np.ones_like(start)
             fields = {
                 "velocity": velocity,
                 "speed": np.linalg.norm(velocity, axis=1),
@@ -99,7 +98,11 @@ def fabricate(path, space_name: str, *, spread: float = 2.8, until: float = 1.0,
             frames.write(time, step, fields, position)
     history.write(run.history)
     numbers = {"particle_steps": 1000, "particles": len(start), "steps": len(times), "wall_time": 2.0}
-    write_json(run.summary, summarise(history.dataset(), **numbers, stopped_because="finished", plugins={}))
+    data = history.dataset()
+    grows = data.spread_diameter.values
+    numbers["t500"] = float(np.interp(0.5, grows, times)) if grows.max() > 0.5 else None
+    numbers |= {"at_rest_since": None, "spread_rate": None}
+    write_json(run.summary, summarise(data, **numbers, stopped_because="finished", plugins={}))
     return path
 
 

@@ -93,7 +93,7 @@ def test_only_what_is_finite_and_in_the_domain_is_drawn(tmp_path):
     assert len(drawn(results)) == len(points) - 4
     first, last = panels_of(results)
     assert np.abs(last.get_xlim()).max() < 1100  # mm, of the domain, with a margin
-    assert "height 375 mm" in first.get_title(loc="left")
+    assert "height 400 mm" in first.get_title(loc="left")
     assert "stopped by a guard" in last.get_title(loc="left")
     assert first.collections[0].norm.vmax == 1.0  # and not the speed of what was thrown out
 

@@ -40,7 +40,7 @@ class Fragile(GeneralisedNewtonianLaw):
     """Fails once it has been asked ``bears`` times."""
 
     name = "fragile"
-    api_version = 1
+    api_version = 2
     citation = "none"
     bears: ClassVar[int] = 20
     asked: ClassVar[int] = 0

@@ -72,4 +72,4 @@ def test_no_scheduler_is_one_sentence_and_writes_nothing(here, address, sentence
 def test_without_distributed_the_extra_is_named(here, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert status("study", "s.json", "--scheduler", "tcp://127.0.0.1:1") == 2
-    assert "needs distributed: pip install 'mpmkit[cluster]'" in one_line(capsys)
+    assert "needs distributed: pip install distributed, or pip install '.[cluster]'" in one_line(capsys)

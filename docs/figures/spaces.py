@@ -29,7 +29,7 @@ def main() -> None:
         history = mpmkit.run(case, listen=lambda p: print(f"t = {p.time:.3f} s, {p.seconds_left:.0f} s left"))
         axes.plot(history.time, 1e3 * history.spread_diameter, label=label, **style)
         spreads.append(np.interp(np.linspace(0, UNTIL, 101), history.time, history.spread_diameter))
-        print(f"{name}: T500 {np.interp(0.5, history.spread_diameter, history.time):.3f} s")
+        print(f"{name}: T500 {history.attrs['t500']:.3f} s")
     apart = np.abs(spreads[1] / spreads[0] - 1)
     print(f"apart by at most {apart.max():.2%}, at the end by {apart[-1]:.2%}")
     for spread in spreads:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ..running.threads import use_threads
+from ..running.threads import using_threads
 from ..solver.simulation import Simulation
 from .midflow import in_mid_flow
 from .scenes import BenchScene
@@ -55,7 +55,11 @@ def time_scene(scene: BenchScene, threads: int | None = None, seconds: float = 5
 
 def timed(simulation: Simulation, name: str, threads: int | None, seconds: float) -> Timing:
     """As ``time_scene``, of a scene that is already set up; it moves on."""
-    threads = use_threads(threads, len(simulation.particles))
+    with using_threads(threads, len(simulation.particles)) as used:
+        return _timed(simulation, name, used, seconds)
+
+
+def _timed(simulation: Simulation, name: str, threads: int, seconds: float) -> Timing:
     for _ in range(WARM_UP):
         simulation.advance()
     particles = len(simulation.particles)

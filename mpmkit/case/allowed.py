@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 from collections.abc import Iterable
 from copy import copy
@@ -46,6 +45,10 @@ class Place:
     def choices(self) -> list[Any]:
         """Values of which one must stand here."""
         return [value for node in self.nodes for value in _constants(node)]
+
+    def takes_numbers(self) -> bool:
+        """Whether a number may stand here."""
+        return any(node.get("type") in ("number", "integer") for node in self.nodes)
 
     def selector(self) -> tuple[str, list[Any]] | None:
         """The key whose value says which of several objects is meant, and its values."""
@@ -168,15 +171,6 @@ def shown(value: Any) -> str:
 def one_of(values: list[Any]) -> str:
     """``"a", "b" or "c"``, as they would stand in the file."""
     return _listed([json.dumps(value, ensure_ascii=False) for value in values], "or")
-
-
-def nearest(word: Any, allowed: Iterable[Any]) -> str | None:
-    """Of the names that are allowed, the one that a misspelt word may have meant."""
-    if not isinstance(word, str):
-        return None
-    by_case = {str(name).casefold(): name for name in allowed}
-    close = difflib.get_close_matches(word.casefold()[:LONGEST], by_case, n=1)
-    return by_case[close[0]] if close else None
 
 
 def _keys(names: list[str]) -> str:

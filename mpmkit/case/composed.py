@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from functools import lru_cache, reduce
 from operator import or_
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, create_model, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, create_model, model_validator
 
 from ..contracts import ConstitutiveLaw
-from ..registry import Registry
+from ..registry import Registry, installed
 from .consistency import check
 from .model import Body, Case, Material, Scheme
 
@@ -20,10 +20,26 @@ from .model import Body, Case, Material, Scheme
 class CheckedCase(Case):
     """A case whose fields fit together."""
 
+    registry: ClassVar[Registry]
+    """Plug-ins that it was composed of."""
+
     @model_validator(mode="after")
-    def _fits_together(self) -> CheckedCase:
-        check(self)
+    def _fits_together(self, info: ValidationInfo) -> CheckedCase:
+        if info.context is not _CHECKED_BEFORE:
+            check(self)
         return self
+
+    def __reduce__(self) -> tuple:
+        """So that a case can go to another process: its class is made anew there, of the plug-ins."""
+        known = self.registry is installed()
+        return _unpickled, (self.model_dump_json(), None if known else self.registry)
+
+
+_CHECKED_BEFORE = {"checked": "before"}
+
+
+def _unpickled(text: str, registry: Registry | None) -> Case:
+    return case_model(registry or installed()).model_validate_json(text, context=_CHECKED_BEFORE)
 
 
 def _one_of(members: dict[str, type], key: str) -> Any:
@@ -75,10 +91,12 @@ def case_model(registry: Registry) -> type[Case]:
         volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
         redistribution=_choice(registry.of_kind("redistribution"), "none"),
     )
-    return create_model(
+    model = create_model(
         "Case",
         __base__=CheckedCase,
         __doc__=Case.__doc__,
         bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
         scheme=(scheme, Field(default={}, validate_default=True)),
     )
+    model.registry = registry
+    return model

@@ -10,9 +10,15 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .allowed import nearest, shown
+from ..errors import PluginFault
+from ..output.variables import PARTICLE_VARIABLES
+from ..registry.audit import require_number
+from ..registry.blame import blaming_plugins
+from .allowed import one_of, shown
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .state_variables import state_variables
+from .synonyms import nearest
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
@@ -25,7 +31,10 @@ MOST_OUTPUTS = 100_000
 
 
 def check(case: Case) -> None:
-    """Raise ValueError with one sentence for the first rule that is broken."""
+    """Raise ValueError with one sentence for the first rule that is broken.
+
+    Pydantic takes every ValueError for the user's: what a plug-in raises must not reach it as one.
+    """
     _check_vector("gravity", case.gravity, case)
     if case.space_.radial and case.gravity_vector[0] != 0:
         raise ValueError(f"gravity is {case.gravity}; along r it must be 0 in an axisymmetric scene")
@@ -46,6 +55,17 @@ def check(case: Case) -> None:
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+    _check_particle_history(case)
+
+
+def _check_particle_history(case: Case) -> None:
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    for number, name in enumerate(case.output.particle_history):
+        if name not in allowed:
+            raise ValueError(
+                f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
+                f"{_meant(name, allowed)}"
+            )
 
 
 def _check_vector(field: str, value: list[float] | None, case: Case) -> None:
@@ -171,10 +191,16 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
     """Parameters that are numbers each may make a wave that is none, and a step of zero."""
-    try:
-        speed = material.constitutive_law.wave_speed(material.density, case.sound_speed(material))
-    except OverflowError:
-        speed = math.inf
+    law, sound_speed = material.constitutive_law, case.sound_speed(material)
+    with blaming_plugins([("law", law)]):
+        try:
+            law = law.in_scene(material.density, sound_speed, case.scale)
+            given = law.wave_speed(material.density, sound_speed)
+        except OverflowError:
+            given = math.inf
+        speed = require_number(law, "wave_speed", given)
+        if math.isnan(speed) or speed < 0:
+            raise PluginFault(law, f"has a wave speed of {speed} m/s; it must be positive")
     if not 0 < speed < MOST_SPEED:
         raise ValueError(
             f"{field} makes waves of {speed:.3g} m/s; its moduli and its density must give less than "
@@ -186,7 +212,10 @@ def _check_time_step(case: Case) -> None:
     """Something must limit the step: the waves of the materials, or else their viscosity."""
     ignored = case.scheme.time_step.ignore
     laws = [body.material.constitutive_law for body in case.bodies]
-    viscous = any(law.largest_viscosity(1.0) > 0 for law in laws)
+    with blaming_plugins([("law", law) for law in laws]):
+        viscous = any(
+            require_number(law, "largest_viscosity", law.largest_viscosity(1.0)) > 0 for law in laws
+        )
     if "acoustic" in ignored and ("viscous" in ignored or not viscous):
         raise ValueError(
             f"scheme.time_step.ignore is {shown(ignored)}, which leaves nothing to limit the step of a scene "

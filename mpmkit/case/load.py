@@ -13,8 +13,10 @@ from pydantic import ValidationError
 from ..errors import CaseError
 from ..geometry import FILES
 from ..registry import Registry, installed
+from ..registry.blame import blaming_plugins
 from .allowed import shown
 from .composed import case_model
+from .json_mistakes import mistake
 from .messages import explain
 from .model import Case
 from .overrides import apply_overrides
@@ -33,6 +35,7 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
 
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
+        PluginStop: a plug-in that the case uses fails while it is validated.
     """
     return parse_case(read_case(path), overrides, registry, source=str(path))
 
@@ -52,7 +55,9 @@ def parse_case(
         require_finite(data)  # of Python's, that is: a file has been through this
         data = apply_overrides(data, overrides)
         data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
-        return model.model_validate_json(json.dumps(data, allow_nan=False))
+        text = json.dumps(data, allow_nan=False)
+        with blaming_plugins(registry.all()):
+            return model.model_validate_json(text)
     except ValidationError as error:
         raise CaseError(f"{source}: {explain(error, data, model, registry)}") from None
     except RecursionError:
@@ -105,8 +110,7 @@ def read_json(path: str | Path, what: str = "case") -> Any:
     try:
         return decode(text)
     except json.JSONDecodeError as error:
-        reason = f"{error.msg} at line {error.lineno}, column {error.colno}"
-        raise CaseError(f"{path}: the {what} file is not valid JSON: {reason}") from None
+        raise CaseError(f"{path}: the {what} file is not valid JSON: {mistake(text, error)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 

@@ -8,6 +8,7 @@ gets out.
 from __future__ import annotations
 
 import json
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple, get_args
 
@@ -16,12 +17,16 @@ from pydantic_core import core_schema
 
 from ..contracts import KINDS
 from ..registry import Registry
-from .allowed import LONGEST, Place, nearest, one_of, shown
+from .allowed import LONGEST, Place, one_of, shown
 from .strict_json import NESTED
+from .synonyms import meant, nearest
 
 PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
 """Kinds of error whose text is pydantic's; the others carry the sentence of a validator."""
 TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
+
+MOST_EXAMINED = 100
+"""Unknown keys of which each is compared with those that are missing."""
 
 Path = tuple[str | int, ...]
 
@@ -44,10 +49,13 @@ def explain(
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
     # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
     true_names = {
-        (*c.path[:-1], nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys())) for c in unknown
+        (*c.path[:-1], nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys()))
+        for c in unknown[:MOST_EXAMINED]
     }
     others = [
-        c for c in complaints if c not in unknown and not (c.kind == "missing" and c.path in true_names)
+        c
+        for c in complaints
+        if c.kind != "extra_forbidden" and not (c.kind == "missing" and c.path in true_names)
     ]
     first, *rest = unknown + others
     more = f" (and {len(rest)} more)" if rest else ""
@@ -78,10 +86,11 @@ def _complaint(item: Any, data: Any) -> Complaint:
 
 def _distinct(complaints: list[Complaint]) -> list[Complaint]:
     """One complaint a place; of the alternatives that a value fails, the one that it comes closest to."""
-    first = {complaint.path: complaint for complaint in reversed(complaints)}
+    first: dict[Path, Complaint] = {}
+    for complaint in complaints:
+        first.setdefault(complaint.path, complaint)
     inner = {path[:depth] for path in first for depth in range(len(path))}
-    kept = [c for path, c in first.items() if path not in inner or c.kind not in PYDANTICS_OWN]
-    return sorted(kept, key=complaints.index)
+    return [c for path, c in first.items() if path not in inner or c.kind not in PYDANTICS_OWN]
 
 
 def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry, what: str) -> str:
@@ -102,12 +111,31 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry,
         allowed = one_of(choices)
     else:
         allowed = one_of(choices) if choices and isinstance(value, str) else place.describe()
-    near, written_out = nearest(value, choices), place.written_out(value) if isinstance(value, str) else None
-    hint = f"; did you mean {json.dumps(near)}?" if near is not None and not missing else ""
-    if written_out is not None and not missing:
-        hint = f"; did you mean {written_out}?"
+    unusable, why_not = _unusable(path, value, choices, registry)
+    hint = "" if missing or value in unusable else _hint(value, place, [*choices, *unusable])
     state = "is missing" if missing else f"is {shown(value)}"
-    return f"{_field(path)} {state}; it must be {allowed}{hint}{_unusable(path, value, registry)}"
+    return f"{_field(path)} {state}; it must be {allowed}{hint}{why_not}"
+
+
+def _hint(value: Any, place: Place, choices: list[Any]) -> str:
+    """What somebody may have meant: one of the choices, an object that is named by a word, or a number."""
+    if not isinstance(value, str):
+        return ""
+    selector = place.selector()
+    names = meant(value, dict.fromkeys([*choices, *(selector[1] if selector is not None else [])]))
+    meanings = [json.dumps(n) if n in choices else str(place.written_out(n)) for n in names]
+    if not meanings and place.takes_numbers():
+        meanings = [number] if (number := _number(value)) is not None else []
+    return f"; did you mean {' or '.join(meanings)}?" if meanings else ""
+
+
+def _number(text: str) -> str | None:
+    """The number that a text says, with a decimal comma or without, as it stands in a file."""
+    digits = text.strip().replace(",", ".")
+    try:
+        return json.dumps(json.loads(digits)) if math.isfinite(float(digits)) else None
+    except ValueError:
+        return None
 
 
 def _field(path: Path) -> str:
@@ -120,17 +148,28 @@ def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
     return f"{_field(path[:-1]) or f'the {what}'} has an unknown key '{str(path[-1])[:LONGEST]}'; {hint}"
 
 
-def _unusable(path: Path, name: Any, registry: Registry) -> str:
-    """Of the plug-ins that were not loaded, those that may have been meant, or else all of them."""
+def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> tuple[list[str], str]:
+    """Names of plug-ins that may have been meant but cannot be used, and why the one that was meant cannot.
+
+    Of the plug-ins that were not loaded, those that may have been meant are named, or else all of them.
+    """
     kinds = [
         key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
     ]
     if not kinds or not registry.problems:
-        return ""
-    meant = [
-        problem for problem in registry.problems if isinstance(name, str) and problem.concerns(kinds[0], name)
-    ]
-    if meant:
-        return "".join(f"; {problem}" for problem in meant)
+        return [], ""
+    kind, reasons = str(kinds[0]), []
+    unusable = registry.unusable(kind)
+    if isinstance(name, str):
+        if own := registry.why_not(kind, name):
+            return [name], _each(own)
+        near = next(iter(meant(name, [*choices, *unusable])), None)
+        reasons = registry.why_not(kind, near) if near in unusable else []
+    if reasons:
+        return unusable, _each(reasons)
     names = ", ".join(f"'{p.entry_point}' of '{p.distribution}'" for p in registry.problems)
-    return f"; plug-ins that were not loaded are {names}, see mpmkit plugins"
+    return unusable, f"; plug-ins that were not loaded are {names}, see mpmkit plugins"
+
+
+def _each(reasons: list[str]) -> str:
+    return "".join(f"; {reason}" for reason in reasons)

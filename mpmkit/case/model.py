@@ -15,35 +15,18 @@ from pydantic import Discriminator, Field, Tag
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
 from ..contracts.redistribution import Redistribution
+from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
+from .faces import Face
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
 STANDARD_GRAVITY = 9.81
-
-
-class Friction(Model):
-    """A Coulomb wall: it pushes but does not pull, and drags with at most ``coefficient`` times its push."""
-
-    kind: Literal["friction"]
-    coefficient: float = quantity("1", "Coulomb friction coefficient", ge=0)
-
-
-FaceName = Literal["slip", "stick", "periodic", "open", "symmetry"]
-
-
-def _face_tag(value: Any) -> str:
-    return "name" if isinstance(value, str) else "friction"
-
-
-Face = Annotated[
-    Annotated[FaceName, Tag("name")] | Annotated[Friction, Tag("friction")], Discriminator(_face_tag)
-]
 
 
 class Grid(Model):
@@ -202,9 +185,25 @@ class Case(Model):
 
     @cached_property
     def height(self) -> float:
-        """Vertical extent h of all bodies together, m."""
+        """Extent h of all bodies together along gravity, m."""
         bounds = [body.shape.bounds(self.space_) for body in self.bodies]
-        return float(max(upper[-1] for _, upper in bounds) - min(lower[-1] for lower, _ in bounds))
+        ends = np.array([np.sort(self._downwards * np.array(b), axis=0).sum(axis=1) for b in bounds])
+        return float(ends[:, 1].max() - ends[:, 0].min())
+
+    @cached_property
+    def _downwards(self) -> np.ndarray:
+        """Unit vector of gravity, without what acts along a periodic axis, which has no height; down the last
+        axis where nothing is left."""
+        along = np.array([self.grid.faces.get(f"{axis}_min") == "periodic" for axis in self.space_.axes])
+        vector = np.where(along, 0.0, self.gravity_vector)
+        if not vector.any():
+            vector[-1] = -1.0
+        return vector / np.linalg.norm(vector)
+
+    @cached_property
+    def scale(self) -> Scale:
+        """How large the scene is, and what drives it."""
+        return Scale(self.largest_energy, self.height)
 
     @cached_property
     def largest_energy(self) -> float:

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from ..contracts import quantity
+from ..output.variables import PARTICLE_VARIABLES
 
 ROWS, FRAMES = 400, 20
 """Rows and frames of a run whose case does not say how often."""
+
+
+ParticleFieldName = Annotated[
+    str,
+    WithJsonSchema(
+        {
+            "type": "string",
+            "allowed": "a particle field or a state variable of a law of the case",
+            "examples": list(PARTICLE_VARIABLES),
+        }
+    ),
+]
 
 
 class OutputSettings(BaseModel):
@@ -28,7 +41,7 @@ class OutputSettings(BaseModel):
         "times whose frames the report draws; the last state is always drawn",
         default=[0.0, 0.1, 0.2, 0.5],
     )
-    particle_history: list[Literal["position", "velocity", "stress", "pressure", "volume_ratio"]] = Field(
+    particle_history: list[ParticleFieldName] = Field(
         default=[], description="particle fields kept in every row of the history, by particle number"
     )
     report: bool = Field(default=True, description="whether pictures are drawn at the end")

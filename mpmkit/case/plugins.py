@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from ..contracts import Plugin
+from ..contracts.version1 import deprecation
+from ..registry.audit import require_sentences
+from ..registry.blame import blaming_plugins
 from .model import Case
 
 SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution")
@@ -25,7 +28,13 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
 
 
 def cautions(case: Case) -> list[str]:
-    """A sentence for each thing that is known to fail, those of several materials once."""
-    return list(
-        dict.fromkeys(sentence for _, plugin in plugins_of(case) for sentence in plugin.cautions(case))
-    )
+    """A sentence for each thing that is known to fail, and for each plug-in of an older version, once.
+
+    Raises:
+        PluginStop: a plug-in cannot say it.
+    """
+    used = plugins_of(case)
+    with blaming_plugins(used):
+        said = [require_sentences(plugin, "cautions", plugin.cautions(case)) for _, plugin in used]
+    old = filter(None, (deprecation(plugin) for _, plugin in used))
+    return list(dict.fromkeys([*(sentence for sentences in said for sentence in sentences), *old]))

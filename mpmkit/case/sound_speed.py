@@ -11,7 +11,10 @@ from .base import Model
 
 
 class SoundSpeedFactor(Model):
-    """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h)."""
+    """Sound speed as a multiple of the free-fall speed over the height of the scene, c = factor √(2 g h).
+
+    h is the extent of all bodies along gravity.
+    """
 
     factor: float = quantity("1", "multiple of √(2 g h)", gt=0)
 
@@ -19,9 +22,9 @@ class SoundSpeedFactor(Model):
 class SoundSpeedMach(Model):
     """Sound speed that follows the flow, c = √(2 e) / mach.
 
-    e, J/kg, is the largest energy that a particle has, of its speed and of its height above the lowest one:
-    none can come to flow faster than √(2 e). For a body at rest e = g h; as it slumps, e falls, and the steps
-    grow.
+    e, J/kg, is the largest energy that a particle has, of its speed, of its height above the lowest one, and
+    stored in it: none can come to flow faster than √(2 e). For a body at rest e = g h; as it slumps, e falls,
+    and the steps grow.
     """
 
     mach: float = quantity("1", "largest Mach number that the flow can reach", gt=0, lt=1)

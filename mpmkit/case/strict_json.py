@@ -1,4 +1,4 @@
-"""JSON as a case needs it: no key twice in an object, and every number finite."""
+"""JSON as a case needs it: no key twice in an object, not too many keys, and every number finite."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from typing import Any
 NESTED = "its objects and lists are nested too deeply"
 MOST_DIGITS = 400
 """Longest number: more digits than any double has; Python's own limit would be told of in Python's words."""
+MOST_KEYS = 10_000
+"""Keys in one object: far more than any case or study has; each one that is unknown is looked at."""
 LONGEST_PATH = 200
 """Characters of a place that are shown."""
 
@@ -55,11 +57,21 @@ def require_finite(data: Any) -> None:
 
 
 def _leaves(data: Any) -> Iterator[tuple[tuple[str | int, ...], Any]]:
-    """Places and values of all that is neither an object nor a list, in the order of the text."""
+    """Places and values of all that is neither an object nor a list, in the order of the text.
+
+    An object with too many keys counts as refused.
+    """
     pending: list[tuple[tuple[str | int, ...], Any]] = [((), data)]
     while pending:  # no recursion: how deep a text may be nested is not for this to say
         path, value = pending.pop()
-        if isinstance(value, dict):
+        if isinstance(value, dict) and len(value) > MOST_KEYS:
+            first = str(next(iter(value)))[:LONGEST_PATH]
+            why = (
+                f"an object has {len(value):,} keys, of which '{first}' is the first; "
+                f"at most {MOST_KEYS:,} are read"
+            )
+            yield path, Refused(why)
+        elif isinstance(value, dict):
             pending += [((*path, key), item) for key, item in reversed(value.items())]
         elif isinstance(value, list | tuple):
             pending += [((*path, index), item) for index, item in reversed(list(enumerate(value)))]
@@ -70,8 +82,8 @@ def _leaves(data: Any) -> Iterator[tuple[tuple[str | int, ...], Any]]:
 def _unique(pairs: list[tuple[str, Any]]) -> Any:
     found = dict(pairs)
     if len(found) < len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
+        seen: set[str] = set()
+        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
         return Refused(f"the key '{twice}' stands twice in one object; keep one of them")
     return found
 

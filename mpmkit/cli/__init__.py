@@ -16,7 +16,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     try:
         from .commands import execute  # in here: Ctrl-C may come while this is loaded
+        from .printing import replace_unknown_characters
 
+        replace_unknown_characters()
         status = execute(arguments)
     except KeyboardInterrupt as stop:
         print(f"mpmkit: {' '.join(str(stop).split()) or 'interrupted'}", file=sys.stderr)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
-
 import click
 
 from . import options
+from .printing import echo_json
 
 SECONDS = 5.0
 """For how long a scene is timed unless told."""
@@ -32,7 +31,7 @@ def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_jso
         if not as_json:
             click.echo(_table(SCENES[name].description, timings[-1]))
     if as_json:
-        click.echo(json.dumps(timings, indent=2, ensure_ascii=False))
+        echo_json(timings)
 
 
 def _table(description: str, timing: dict) -> str:

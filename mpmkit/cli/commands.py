@@ -12,7 +12,21 @@ import click
 
 from ..errors import MpmkitError, OutputError
 from ..version import __version__
-from . import bench, chart, compare, new_plugin, options, plan, plugins, rerun, run, schema, stability, study
+from . import (
+    bench,
+    chart,
+    compare,
+    new_plugin,
+    options,
+    plan,
+    plugins,
+    report,
+    rerun,
+    run,
+    schema,
+    stability,
+    study,
+)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
@@ -27,7 +41,20 @@ def commands(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for module in (run, rerun, plan, compare, study, chart, stability, bench, plugins, new_plugin, schema):
+for module in (
+    run,
+    rerun,
+    report,
+    plan,
+    compare,
+    study,
+    chart,
+    stability,
+    bench,
+    plugins,
+    new_plugin,
+    schema,
+):
     commands.add_command(module.command)
 for command in (commands, *commands.commands.values()):
     command.params.append(options.no_plugins)

@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import logging
 import time as clock
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from numba.core import event
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+from rich.table import Column
 
+from ..output.log import RECORD
+from ..output.summary import state_at_end
 from .duration import duration
 
 if TYPE_CHECKING:
@@ -21,6 +26,10 @@ if TYPE_CHECKING:
 LOGGER = logging.getLogger("mpmkit")
 LINE_INTERVAL = 30.0
 """Seconds between lines where the output is not a terminal."""
+LONGEST_NAME = 24
+"""Letters of a case's name beside the bar."""
+NARROWEST_BAR, WIDEST_BAR = 10, 40
+PERCENTAGE = len("100% ")
 FIGURES = (
     ("t500", "T500", 1, " s", 3),
     ("final_spread", "final spread", 1e3, " mm", 1),
@@ -54,49 +63,85 @@ class Display(logging.Handler):
 
     def __init__(self, name: str) -> None:
         super().__init__()
+        self._room = console.width - min(len(name), LONGEST_NAME) - PERCENTAGE - 3  # for the bar and its line
+        width = min(max(self._room - len(_lines(0.1234, 100.0, 1e7, 35999)[0]), NARROWEST_BAR), WIDEST_BAR)
+        self._room -= width
         self._bar = Progress(
-            TextColumn("[bold]{task.description}"),
-            BarColumn(),
+            TextColumn(
+                "[bold]{task.description}",
+                table_column=Column(no_wrap=True, overflow="ellipsis", max_width=LONGEST_NAME),
+            ),
+            BarColumn(width),
             TaskProgressColumn(),
-            TextColumn("{task.fields[line]}"),
+            TextColumn("{task.fields[line]}", table_column=Column(no_wrap=True)),
             console=console,
             disable=not console.is_terminal,
         )
         self._task = self._bar.add_task(name, total=1.0, line="")
         self._started = False
+        self._compiling = _Compiling(self._say_compiling)
         self._said = clock.monotonic()
         self._level_before = LOGGER.level
 
     def __enter__(self) -> Display:
         LOGGER.addHandler(self)
         LOGGER.setLevel(logging.INFO)
+        event.register("numba:compile", self._compiling)
         return self
 
     def __exit__(self, *error: object) -> None:
+        event.unregister("numba:compile", self._compiling)
         self._bar.stop()
         LOGGER.removeHandler(self)
         LOGGER.setLevel(self._level_before)
 
     def emit(self, record: logging.LogRecord) -> None:
+        if record.name == RECORD.name:
+            return
         if record.levelno < logging.WARNING:
             say(record.getMessage())
         elif record.levelno < logging.ERROR:
             say(f"warning: {record.getMessage()}", style="yellow")
         if not self._started:
             self._started = True
-            say("loading kernels; those that are new are compiled first, which takes about half a minute")
             self._bar.start()
 
+    def _say_compiling(self) -> bool:
+        """Say that kernels are compiled, once the run has begun to speak; whether it was said."""
+        if self._started:
+            say("compiling kernels for the first run of this kind, which takes about half a minute")
+        return self._started
+
     def __call__(self, progress: runner.Progress) -> None:
-        line = (
-            f"t = {progress.time:.4g} of {progress.until:g} s · "
-            f"{progress.particle_steps_per_second / 1e6:.2f} M particle-steps/s · "
-            f"{duration(progress.seconds_left)} left"
+        lines = _lines(
+            progress.time, progress.until, progress.particle_steps_per_second, progress.seconds_left
         )
-        self._bar.update(self._task, completed=progress.time / progress.until, line=line)
+        fitting = next((line for line in lines if len(line) <= self._room), "")
+        self._bar.update(self._task, completed=progress.time / progress.until, line=fitting)
         if not console.is_terminal and clock.monotonic() - self._said > LINE_INTERVAL:
             self._said = clock.monotonic()
-            say(line)
+            say(lines[0])
+
+
+class _Compiling(event.Listener):
+    """Calls ``say`` at the first kernel that is compiled and not loaded, until it returns True."""
+
+    def __init__(self, say: Callable[[], bool]) -> None:
+        self._say = say
+        self._said = False
+
+    def on_start(self, _: event.Event) -> None:
+        self._said = self._said or self._say()
+
+    def on_end(self, _: event.Event) -> None:
+        pass
+
+
+def _lines(time: float, until: float, speed: float, seconds_left: float) -> tuple[str, ...]:
+    """What stands beside the bar, the longest first: a narrow terminal has room for the last alone."""
+    left = f"{duration(seconds_left)} left"
+    now = f"t = {time:.4g} of {until:g} s"
+    return f"{now} · {speed / 1e6:.2f} M particle-steps/s · {left}", f"{now} · {left}", left
 
 
 def show_summary(directory: Path) -> None:
@@ -106,5 +151,7 @@ def show_summary(directory: Path) -> None:
     for key, label, scale, unit, digits in FIGURES:
         value = summary[key]
         figure = "–" if value is None else f"{value * scale:,.{digits}f}{unit}"
+        if key == "final_spread" and (state := state_at_end(summary)) is not None:
+            figure += f", {state}"
         click.echo(f"{label:<{width}}  {figure}")
     click.echo(f"results in {directory}")

@@ -10,9 +10,12 @@ import click
 @click.command("new-plugin")
 @click.argument("name")
 @click.option(
-    "--kind", type=click.Choice(["law", "shape", "order"]), required=True, help="What the plug-in is."
+    "--kind",
+    type=click.Choice(["law", "shape", "order", "velocity", "volumetric", "equation_of_state"]),
+    required=True,
+    help="What the plug-in is.",
 )
-@click.option("--out", type=click.Path(), metavar="DIR", help="Directory to make; mpmkit-NAME unless told.")
+@click.option("--out", type=click.Path(), metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
 def command(name: str, kind: str, out: str | None) -> None:
     """Write a distribution for a new plug-in NAME, with tests that it passes, to be made one's own."""
     from ..registry.scaffold import new_plugin

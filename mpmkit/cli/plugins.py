@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
+from typing import Any
 
 import click
 
 from . import options
+from .printing import echo_json
 
 COLUMNS = ("kind", "name", "distribution", "citation")
 
@@ -16,16 +17,18 @@ COLUMNS = ("kind", "name", "distribution", "citation")
 @options.as_json
 def command(as_json: bool) -> None:
     """List the registered plug-ins, and those that could not be loaded or were left out."""
+    from ..contracts.version1 import deprecation
     from ..registry import installed
 
     registry = installed()
-    found = [
+    found: list[dict[str, Any]] = [
         {
             "kind": kind,
             "name": name,
             "distribution": entry.distribution,
             "version": entry.version,
             "entry_point": entry.entry_point,
+            "api_version": entry.plugin.api_version,
             "citation": entry.plugin.citation,
         }
         for kind, entries in registry.plugins.items()
@@ -33,7 +36,7 @@ def command(as_json: bool) -> None:
     ]
     if as_json:
         problems = [asdict(problem) for problem in registry.problems]
-        click.echo(json.dumps({"plugins": found, "problems": problems}, indent=2, ensure_ascii=False))
+        echo_json({"plugins": found, "problems": problems})
         return
     rows = [COLUMNS] + [
         (entry["kind"], entry["name"], f"{entry['distribution']} {entry['version']}", entry["citation"])
@@ -43,5 +46,10 @@ def command(as_json: bool) -> None:
     for row in rows:
         cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
+    for entries in registry.plugins.values():
+        for _, entry in sorted(entries.items()):
+            old = deprecation(entry.plugin)
+            if old is not None:
+                click.echo(old, err=True)
     for problem in registry.problems:
         click.echo(str(problem), err=True)

@@ -1,29 +1,53 @@
-"""What a person sees of a study: a bar over its members, and a line for each that ends."""
+"""What a person sees of a study: how long it takes, a bar over its members, and a line for each that ends."""
 
 from __future__ import annotations
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from ..plan.rough import rough_seconds
 from ..study import Member
 from ..study.work import Outcome
 from .display import console, say
+from .duration import duration
+
+WORTH_SAYING = 10.0
+"""Seconds that a study takes at the least, for its time to be said."""
 
 
 class StudyProgress:
-    """A context manager, called with every member that has come to its end."""
+    """A context manager, called with every member that has come to its end.
 
-    def __init__(self, name: str, total: int, already: int) -> None:
+    Args:
+        name: of the study.
+        waiting: members that are to be run.
+        already: number of those that have run before.
+        at_once: members that run at once.
+        threads: of each member.
+    """
+
+    def __init__(self, name: str, waiting: list[Member], already: int, at_once: int, threads: int) -> None:
+        self._expected = {member.slug: _expected(member, threads) for member in waiting}
+        self._at_once = max(1, min(at_once, len(waiting)))
+        self._taken = self._of_those = 0.0
+        total = len(waiting) + already
         self._bar = Progress(
             TextColumn("[bold]{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
+            TextColumn("{task.fields[left]}"),
             console=console,
             disable=not console.is_terminal,
         )
-        self._task = self._bar.add_task(name, total=total, completed=already)
         if already:
             say(f"{already} of {total} members have run before and are kept")
+        if self._left() >= WORTH_SAYING:
+            longest = max(self._expected.values())
+            say(
+                f"{len(waiting)} members to run, {self._at_once} at once: {self._words()}, "
+                f"the longest member about {duration(longest)} (roughly; mpmkit plan measures a member)"
+            )
+        self._task = self._bar.add_task(name, total=total, completed=already, left=self._words())
 
     def __enter__(self) -> StudyProgress:
         self._bar.start()
@@ -33,7 +57,27 @@ class StudyProgress:
         self._bar.stop()
 
     def __call__(self, member: Member, outcome: Outcome) -> None:
-        self._bar.advance(self._task)
-        seconds = outcome.cost.get("wall_seconds")
+        expected, seconds = self._expected.pop(member.slug, 0.0), outcome.cost.get("wall_seconds")
+        if outcome.fate == "finished" and seconds is not None:
+            self._taken += seconds
+            self._of_those += expected
+        self._bar.update(self._task, advance=1, left=self._words())
         took = "" if seconds is None else f", {seconds:.1f} s"
         say(f"{member.title}: {outcome.fate}{took}{': ' if outcome.sentence else ''}{outcome.sentence}")
+
+    def _left(self) -> float:
+        """Seconds, from the rough times of those that wait, corrected by what others have really taken."""
+        correction = self._taken / self._of_those if self._of_those > 0 else 1.0
+        each = [correction * seconds for seconds in self._expected.values()]
+        return max(sum(each) / self._at_once, max(each, default=0.0))
+
+    def _words(self) -> str:
+        return f"about {duration(self._left())} left" if self._expected else ""
+
+
+def _expected(member: Member, threads: int) -> float:
+    """Rough time of a member, s; of a faulty plug-in none is known, and it is told when the member is run."""
+    try:
+        return rough_seconds(member.case, threads)
+    except Exception:
+        return 0.0

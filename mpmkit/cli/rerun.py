@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 
 import click
@@ -21,6 +20,7 @@ def command(directory: str, out: str | None, threads: int | None, overwrite: boo
 
     The exit status is 1 where it does not.
     """
+    from ..running.interrupts import take_signals_as_interrupts
     from ..running.rerun import first_difference, history_of, made_differently
     from ..running.resume import case_of
     from .run import perform
@@ -30,7 +30,7 @@ def command(directory: str, out: str | None, threads: int | None, overwrite: boo
     target = Path(out) if out is not None else path.with_name(f"{path.resolve().name}-rerun")
     for sentence in made_differently(before, case, threads or 1):
         click.echo(f"not as it was: {sentence}")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    take_signals_as_interrupts()
     perform(target, quiet, resumed=False, case=case, overwrite=overwrite, threads=threads,
             checkpoint_every=None)  # fmt: skip
     apart = first_difference(before, history_of(target))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +23,16 @@ from .duration import SECONDS
     "--checkpoint-every",
     type=SECONDS,
     metavar="TIME",
-    help="Wall time between two checkpoints, such as 60s, 10min or 1h; on Ctrl-C there is one in any case.",
+    help="Wall time between two checkpoints, such as 60s, 10min or 1h; on Ctrl-C, and before the last step, "
+    "there is one in any case.",
 )
 @click.option(
     "--resume",
     "stopped",
     type=click.Path(),
     metavar="DIR",
-    help="Go on with the run in this directory from its last checkpoint; CASE may be left out.",
+    help="Go on with the run in this directory from its last checkpoint; CASE may be left out. With --until, "
+    "a run that has finished goes on to a later time.",
 )
 def command(
     case: str | None,
@@ -49,42 +50,58 @@ def command(
         raise click.UsageError("--resume goes on in its own directory: leave out --out and --overwrite")
     if stopped is None and case is None:
         raise click.UsageError("Missing argument 'CASE'")
-    if stopped is not None and case is None and (overrides or until is not None):
-        raise click.UsageError("--resume goes on with the case as it was: leave out --set and --until")
+    if stopped is not None and case is None and overrides:
+        raise click.UsageError("--resume goes on with the case as it was: leave out --set")
 
     from ..case import load_case
+    from ..running.interrupts import take_signals_as_interrupts
 
-    loaded = None if case is None else load_case(case, options.with_until(overrides, until))
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
+    take_signals_as_interrupts()
+    settings: dict[str, Any] = {"threads": threads, "checkpoint_every": checkpoint_every}
     if stopped is not None:
-        directory = Path(stopped)
+        loaded = None if case is None else load_case(case, overrides)
+        perform(Path(stopped), quiet, resumed=True, case=loaded, until=until, **settings)
     else:
-        directory = Path(out) if out is not None else Path("runs") / loaded.name  # type: ignore[union-attr]
-    perform(directory, quiet, resumed=stopped is not None, case=loaded, overwrite=overwrite,
-            threads=threads, checkpoint_every=checkpoint_every)  # fmt: skip
+        assert case is not None
+        loaded = load_case(case, options.with_until(overrides, until))
+        directory = Path(out) if out is not None else Path("runs") / loaded.name
+        perform(directory, quiet, resumed=False, case=loaded, overwrite=overwrite, **settings)
 
 
-def perform(
-    directory: Path, quiet: bool, *, resumed: bool, case: Any, overwrite: bool, **settings: Any
-) -> None:
-    """Run or go on in a directory, and show what a person wants to see of it."""
+def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **settings: Any) -> None:
+    """Run or go on in a directory, and show what a person wants to see of it.
+
+    Args:
+        directory: of the run.
+        quiet: whether to show nothing but errors.
+        resumed: whether the run goes on.
+        case: the case; None for that of the directory.
+        settings: for ``run``, or for ``resume``.
+    """
+    from contextlib import suppress
+
     import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
 
+    from ..errors import Undrawn
     from ..running.runner import resume, run
 
     def go(listen: Any) -> None:
         if resumed:
             resume(directory, case=case, listen=listen, **settings)
         else:
-            run(case, directory, overwrite=overwrite, listen=listen, **settings)
+            run(case, directory, listen=listen, **settings)
 
     with np.errstate(all="ignore"):  # a run that diverges is told of by its guard, not by every array
         if quiet:
-            go(None)
+            with suppress(Undrawn):
+                go(None)
             return
 
-        from .display import Display, show_summary
+        from .display import Display, say, show_summary
 
         with Display(directory.name if case is None else case.name) as display:
-            go(display)
+            try:
+                go(display)
+            except Undrawn as undrawn:  # the run itself has come to its end
+                say(f"warning: {undrawn}", style="yellow")
     show_summary(directory)

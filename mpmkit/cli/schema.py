@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
-
 import click
+
+from .printing import echo_json
 
 
 @click.command("schema")
@@ -13,4 +13,4 @@ def command() -> None:
     from ..case import case_schema
     from ..registry import installed
 
-    click.echo(json.dumps(case_schema(installed()), indent=2, ensure_ascii=False))
+    echo_json(case_schema(installed()))

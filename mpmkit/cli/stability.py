@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 
 import click
 
 from . import options
+from .printing import echo_json
 
 
 def _names(kind: str):
@@ -64,7 +64,7 @@ def command(
             say(f"{', '.join(labels.values()) or data['name']}: {_stable(rows[-1])}")
     if as_json:
         finite = [{k: None if v == math.inf else v for k, v in row.items()} for row in rows]
-        click.echo(json.dumps(finite, indent=2, ensure_ascii=False))
+        echo_json(finite)
     else:
         click.echo(_table(list(chosen), rows))
     from ..stability.figure import draw

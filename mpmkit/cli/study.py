@@ -43,19 +43,21 @@ def run_study(
     quiet: bool,
 ) -> None:
     """Run a study into its directory and say what came of it."""
-    import signal
     from contextlib import nullcontext
 
     from ..errors import Interrupted
+    from ..running.interrupts import take_signals_as_interrupts
     from ..study import collect, execute, members_of
+    from ..study.processes import cores
     from ..study.store import Store
 
     members = members_of(study)
     store = Store(Path(out) if out is not None else Path("runs") / study.name)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a cluster ends runs so
+    take_signals_as_interrupts()
     # The cluster first of all: where there is none, nothing is written.
     with _cluster(scheduler) as executor, store.claimed(study):
-        progress = None if quiet else _progress(study, members, store)
+        at_once = workers or max(1, cores() // (threads or study.threads))
+        progress = None if quiet else _progress(study, members, store, at_once, threads or study.threads)
         with progress or nullcontext():
             try:
                 execute(
@@ -78,13 +80,14 @@ def run_study(
         click.echo(f"results in {store.path}")
 
 
-def _progress(study: Study, members: list[Member], store: Store) -> StudyProgress:
+def _progress(study: Study, members: list[Member], store: Store, at_once: int, threads: int) -> StudyProgress:
     from .display import say
     from .progress import StudyProgress
 
     for sentence in dict.fromkeys(remark for member in members for remark in member.remarks):
         say(sentence)
-    return StudyProgress(study.name, len(members), sum(store.settled(member) for member in members))
+    waiting = [member for member in members if not store.settled(member)]
+    return StudyProgress(study.name, waiting, len(members) - len(waiting), at_once, threads)
 
 
 def _cluster(scheduler: str | None):

@@ -1,29 +1,34 @@
 """What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
 
-from .base import API_VERSION, Plugin, quantity
+from . import maxwell, tensors
+from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
 from .elastoviscoplastic import ElastoviscoplasticLaw
+from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
-from .law import ConstitutiveLaw, Motion, StateVariable
+from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
+from .version1 import Motion as Motion
 from .volumetric import VolumetricTreatment
 
 __all__ = [
     "API_VERSION",
     "KINDS",
+    "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
     "Cells",
     "ConstitutiveLaw",
     "ElastoviscoplasticLaw",
+    "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
+    "Kinematics",
     "Lattice",
-    "Motion",
     "Operations",
     "Plugin",
     "Redistributing",
@@ -34,5 +39,7 @@ __all__ = [
     "VelocityUpdate",
     "VolumetricTreatment",
     "hookimpl",
+    "maxwell",
     "quantity",
+    "tensors",
 ]

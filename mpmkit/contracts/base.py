@@ -9,8 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field, model_serializer, model_valid
 from pydantic.json_schema import GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-API_VERSION = 1
-"""Version of the plug-in contracts; a plug-in of another version is reported, not loaded."""
+API_VERSION = 2
+"""Version of the plug-in contracts; it rises where a plug-in must be changed to go on working."""
+OLDEST_API_VERSION = 1
+"""Oldest version whose plug-ins are still used; those of any version that is not supported are reported."""
 
 
 def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
@@ -27,7 +29,7 @@ def one_each(values: Any, asked: np.ndarray, method: str) -> np.ndarray:
     """What a method returned for an array, if it is an array of the same shape.
 
     Raises:
-        TypeError: it is not; a compiled loop would read beyond its end.
+        TypeError: it is not, or not of real numbers; a compiled loop would read beyond its end.
     """
     if not isinstance(values, np.ndarray) or values.shape != asked.shape:
         what = (
@@ -36,6 +38,8 @@ def one_each(values: Any, asked: np.ndarray, method: str) -> np.ndarray:
             else f"a {type(values).__name__}"
         )
         raise TypeError(f"{method} returned {what}; it must return an array of shape {asked.shape}")
+    if values.dtype.kind not in "fiu":
+        raise TypeError(f"{method} returned an array of {values.dtype}; it must return one of float64")
     return values
 
 
@@ -51,7 +55,7 @@ class Plugin(BaseModel):
     name: ClassVar[str]
     citation: ClassVar[str]
     api_version: ClassVar[int]
-    """Version of the contracts that it is written for: its own number, so that an old one is noticed."""
+    """Version of the contracts that it is written for, as a number: so an old plug-in is noticed."""
 
     def cautions(self, case: Any) -> list[str]:
         """Sentences on what is known to fail where a case, whose fields are those of case files, uses it."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from . import maxwell
 from .base import quantity
-from .generalised_newtonian import REST_SHEAR_RATE
-from .law import ConstitutiveLaw, Motion
+from .law import ConstitutiveLaw, Kinematics
+from .scale import REST_SHEAR_RATE, Scale
 
 
 class ElastoviscoplasticLaw(ConstitutiveLaw):
@@ -23,7 +23,8 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
 
     shear_modulus: float | None = quantity(
         "Pa",
-        "elastic shear modulus G below yield; unless told 0.05 ρ c², which hardly shortens the step",
+        "elastic shear modulus G below yield; default: the largest of 0.05 ρ c², tau0/0.003, and 100 times "
+        "the viscous stress that the scene can drive",
         gt=0,
         default=None,
     )
@@ -40,24 +41,62 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         return maxwell.solve(self.flow_curve, trial, stiffness, REST_SHEAR_RATE)
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
-        maxwell.relax(motion, self._modulus(motion), dt, stress, self.relaxed_stress)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        maxwell.relax(kinematics, modulus, dt, stress, self.relaxed_stress)
+
+    def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
+        """With G, which stays the same for the whole run, also where the sound speed follows the flow."""
+        _, flow_stress = scale.flow(self._viscous_stress, density)
+        modulus = maxwell.shear_modulus(
+            self.shear_modulus, density, sound_speed, self._yield_stress, flow_stress
+        )
+        return self.model_copy(update={"shear_modulus": modulus})
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         speed = super().wave_speed(density, sound_speed)
-        return maxwell.wave_speed(maxwell.shear_modulus(self.shear_modulus, density, speed), density, speed)
+        return maxwell.wave_speed(self._modulus(density, speed), density, speed)
 
     def remarks(self, density: float, sound_speed: float | None) -> list[str]:
-        modulus = maxwell.shear_modulus(self.shear_modulus, density, sound_speed)
-        strain = float(np.ravel(self.flow_curve(np.array([REST_SHEAR_RATE])))[0]) / modulus
-        percent = f"{100 * strain:.3g} %"
-        return [f"law '{self.name}' is elastic up to a strain of tau0/G = {percent}, G = {modulus:.4g} Pa"]
+        modulus = self._modulus(density, sound_speed)
+        strain = f"{100 * self._yield_stress / modulus:.3g} %"
+        cost = maxwell.cost(self, density, sound_speed)
+        return [
+            f"law '{self.name}' is elastic up to a strain of tau0/G = {strain}, G = {modulus:.4g} Pa{cost}"
+        ]
+
+    def warnings(self, density: float, sound_speed: float | None, scale: Scale, until: float) -> list[str]:
+        modulus = self._modulus(density, sound_speed)
+        found = maxwell.warnings_of_delay(
+            self, modulus, density, sound_speed, scale, self._viscous_stress, until
+        )
+        strain = self._yield_stress / modulus
+        if strain > maxwell.SOFT:
+            found.append(
+                f"law '{self.name}' is elastic up to a strain of tau0/G = {100 * strain:.3g} %: it wobbles "
+                f"like a jelly before it flows; shear_modulus must be at least "
+                f"{self._yield_stress / maxwell.SOFT:.3g} Pa, or be left out"
+            )
+        return found
+
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> np.ndarray | float:
+        return self._yield_stress
 
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray:
-        return maxwell.strain_energy(self._modulus(motion), motion, stress)
+        modulus = self._modulus(kinematics.density, kinematics.sound_speed)
+        return maxwell.strain_energy(modulus, kinematics, stress)
 
-    def _modulus(self, motion: Motion) -> float:
-        return maxwell.shear_modulus(self.shear_modulus, motion.density, motion.sound_speed)
+    def _modulus(self, density: float, sound_speed: float | None) -> float:
+        if self.shear_modulus is not None:
+            return self.shear_modulus
+        return maxwell.shear_modulus(None, density, sound_speed, self._yield_stress)
+
+    @property
+    def _yield_stress(self) -> float:
+        return float(np.ravel(self.flow_curve(np.array([REST_SHEAR_RATE])))[0])
+
+    def _viscous_stress(self, shear_rate: np.ndarray) -> np.ndarray:
+        return self.flow_curve(shear_rate) - self._yield_stress

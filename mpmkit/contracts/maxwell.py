@@ -15,27 +15,60 @@ Inelasticity (1998), ch. 2.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from ..kernels.elastic import elastic_trial, shrink, stored
 from .base import one_each
-from .law import Motion
+from .law import ConstitutiveLaw, Kinematics
+from .scale import Scale
 
 STIFFNESS = 0.05
-"""G over ρ c² where a case does not give G: as stiff as costs nothing, since it raises the wave speed, and
-with it the number of steps, by 3 %. A yield stress is then reached at a strain of τ0 / (0.05 ρ c²)."""
+"""Least G over ρ c² where a case does not give G: it raises the wave speed, and with it the number of steps,
+by 3 %."""
+YIELD_STRAIN = 0.003
+"""Largest τ0/G where a case does not give G: a body that yields later wobbles like a jelly before."""
+FLOW_STRAIN = 0.01
+"""Largest elastic strain, by the viscous stress that the scene can drive, where a case does not give G.
 
-Curve = Callable[[np.ndarray], np.ndarray]
+The relaxation time μ/G is then at most a hundredth of the time that the flow takes: √(h/g), or μ/(ρ g h)
+where the flow creeps. As the stress is at most ρ g h, G needs to be no more than 100 ρ g h, which is ρ c²/2
+for a sound speed of 10 √(2 g h) and costs 29 % more steps than the sound alone."""
+SOFT = 0.02
+"""Elastic strain at yield above which results are not to be trusted."""
+LATE = 0.02
+"""Part of a run above which the time μ/G, in which a viscosity comes to be felt, is not to be trusted."""
+DEAR = 1.05
+"""Times the steps above which a remark says what the spring costs."""
+
+CLOSE = 1e-13
+"""Part of τ* by which f(γ̇) + G Δt γ̇ may miss it."""
+
+Curve = Callable[..., np.ndarray]
+"""Shear stress, Pa, of steady shear at rates ``(m,)``, 1/s; and of the state, where a law has one."""
 
 
-def shear_modulus(given: float | None, density: float, sound_speed: float | None) -> float:
-    """G, Pa: the given one, or else ``STIFFNESS`` of the bulk modulus ρ c²."""
+def shear_modulus(
+    given: float | None,
+    density: float,
+    sound_speed: float | None,
+    yield_stress: float = 0.0,
+    flow_stress: float = 0.0,
+) -> float:
+    """G, Pa: the given one, or else the largest of 0.05 ρ c², τ0/0.003, and the flow stress over 0.01.
+
+    Args:
+        given: G of the case, Pa, or None.
+        density: ρ, kg/m³.
+        sound_speed: c, m/s.
+        yield_stress: τ0, Pa.
+        flow_stress: viscous stress that the scene can drive, Pa.
+    """
     if given is not None:
         return given
     assert sound_speed is not None
-    return STIFFNESS * density * sound_speed**2
+    return max(STIFFNESS * density * sound_speed**2, yield_stress / YIELD_STRAIN, flow_stress / FLOW_STRAIN)
 
 
 def wave_speed(modulus: float, density: float, sound_speed: float) -> float:
@@ -43,49 +76,127 @@ def wave_speed(modulus: float, density: float, sound_speed: float) -> float:
     return math.sqrt(sound_speed**2 + 4 * modulus / (3 * density))
 
 
+def cost(law: ConstitutiveLaw, density: float, sound_speed: float | None) -> str:
+    """End of a sentence that says what the spring costs; nothing where that is little."""
+    times = law.wave_speed(density, sound_speed) / sound_speed if sound_speed else 1.0
+    return f", which makes the steps {times:.2g} times as many" if times > DEAR else ""
+
+
+def warnings_of_delay(
+    law: ConstitutiveLaw,
+    modulus: float | None,
+    density: float,
+    sound_speed: float | None,
+    scale: Scale,
+    viscous_stress: Curve,
+    until: float,
+) -> list[str]:
+    """Sentences where a viscosity μ is felt too late: after μ/G of the spring, μ/(ρ c²) of the sound.
+
+    Args:
+        law: whose name they have.
+        modulus: G, Pa; None without a spring.
+        density: ρ, kg/m³.
+        sound_speed: c, m/s.
+        scale: of the scene, which says how fast it may flow, and with it what μ is.
+        viscous_stress: rising stress beyond the yield stress, Pa, at shear rates ``(m,)``, 1/s.
+        until: time of the run, s.
+    """
+    rate, stress = scale.flow(viscous_stress, density)
+    if not stress > 0 or sound_speed is None:
+        return []
+    viscosity, allowed = stress / rate, LATE * until
+    spring, sound = viscosity / (modulus or math.inf), viscosity / (density * sound_speed**2)
+    share = f"{100 * LATE:g} %"
+    enough = f"a sound_speed of {math.sqrt(viscosity / allowed / density):.3g} m/s makes it {share}"
+    found = []
+    if spring > allowed:
+        given = "shear_modulus" in type(law).model_fields
+        stiffer = (
+            f"a shear_modulus of {viscosity / allowed:.2g} Pa makes it {share}"
+            if given
+            else "a larger sound_speed makes it less"
+        )
+        found.append(_too_late(law, viscosity, "G", spring, until, "a jelly", stiffer))
+    if sound > allowed:
+        found.append(_too_late(law, viscosity, "(rho c²)", sound, until, "a sponge", enough))
+    return found
+
+
+def _too_late(
+    law: ConstitutiveLaw,
+    viscosity: float,
+    stiffness: str,
+    delay: float,
+    until: float,
+    instead: str,
+    remedy: str,
+) -> str:
+    return (
+        f"law '{law.name}', with {viscosity:.3g} Pa s here, flows only after mu/{stiffness} = {delay:.2g} s, "
+        f"{100 * delay / until:.2g} % of until; up to a few times that it is {instead}, not a liquid, and "
+        f"its motion is not to be trusted; {remedy}"
+    )
+
+
 def relax(
-    motion: Motion,
+    kinematics: Kinematics,
     modulus: float,
     dt: float,
     stress: np.ndarray,
     relaxed: Callable[[np.ndarray, float], np.ndarray],
 ) -> None:
-    """Advance ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
+    """Update ``stress``, ``(n, 6)``, by a step; ``relaxed(trial, G Δt)`` is τ, ``(n,)``, of the trial's."""
     trial = np.empty(len(stress))
-    elastic_trial(motion.velocity_gradient, dt, modulus, stress, trial)
+    elastic_trial(kinematics.velocity_gradient, dt, modulus, stress, trial)
     shrink(stress, trial, one_each(relaxed(trial, modulus * dt), trial, "relaxed_stress"))
 
 
-def strain_energy(modulus: float, motion: Motion, stress: np.ndarray) -> np.ndarray:
+def strain_energy(modulus: float, kinematics: Kinematics, stress: np.ndarray) -> np.ndarray:
     """J s:s / (4 G), J/m³ of initial volume."""
     energy = np.empty(len(stress))
-    stored(stress, motion.volume_ratio, modulus, energy)
+    stored(stress, kinematics.volume_ratio, modulus, energy)
     return energy
 
 
-def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) -> np.ndarray:
+def solve(
+    flow_curve: Curve,
+    trial: np.ndarray,
+    stiffness: float,
+    least_rate: float,
+    state: Mapping[str, np.ndarray] | None = None,
+) -> np.ndarray:
     """τ of f(γ̇) + G Δt γ̇ = τ* for any rising flow curve, by the Illinois rule on 0 <= γ̇ <= τ*/(G Δt).
 
     Every third step halves the bracket on a logarithmic scale instead, since a flow curve may turn anywhere.
 
     Args:
-        curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is the
-            yield stress.
-        trial: τ*, ``(n,)``, Pa.
+        flow_curve: f, from shear rates ``(m,)``, 1/s, all at least ``least_rate``, to Pa; its value there is
+            the yield stress.
+        trial: τ*, ``(n,)``, Pa. What either gives in single precision is solved to what it can tell apart.
         stiffness: G Δt, Pa s.
         least_rate: shear rate that stands for rest, 1/s.
+        state: arrays ``(n, …)``; where it is given, f gets those of the same particles as a second argument.
 
     Raises:
         ArithmeticError: no rate is found; the curve does not rise.
     """
     result = trial.copy()
     low = np.full(len(trial), least_rate)
-    at_rest = curve(low)
+    at_rest = flow_curve(low) if state is None else flow_curve(low, state)
+    close = _close(at_rest)
     if np.ndim(at_rest):  # a constant will do
         one_each(at_rest, low, "the flow curve")
     flows = np.flatnonzero(at_rest + stiffness * low < trial)
     if not len(flows):
         return result
+    curve = flow_curve
+    if state is not None:
+        of_those = {name: array[flows] for name, array in state.items()}
+
+        def curve(rate):
+            return flow_curve(rate, of_those)
+
     target, low = trial[flows], low[flows]
     high = np.maximum(target / stiffness, least_rate)
     with np.errstate(over="ignore"):  # a curve may be beyond any number at the rate of the spring alone
@@ -106,7 +217,7 @@ def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) 
         tried = (low * above - high * below) / (above - below) if step % 3 else np.sqrt(low * high)
         rate = np.where(open_, tried, rate)
         rest = curve(rate) + stiffness * rate - target
-        open_ &= np.abs(rest) > 1e-13 * target
+        open_ &= np.abs(rest) > close * target
         if not open_.any():
             break
         up = rest > 0
@@ -117,5 +228,12 @@ def solve(curve: Curve, trial: np.ndarray, stiffness: float, least_rate: float) 
         side = np.where(up, 1, -1).astype(np.int8)
     else:
         raise ArithmeticError(f"no shear rate gives {target[open_][0]:.6g} Pa: the flow curve must rise")
-    result[flows] = target - stiffness * rate
+    # Of two forms of τ, the second does not magnify the rounding of a curve that is not of double precision.
+    result[flows] = target - stiffness * rate if close == CLOSE else curve(rate)
     return result
+
+
+def _close(values: np.ndarray) -> float:
+    """``CLOSE``, or what the numbers of a flow curve can tell apart if they are not doubles."""
+    dtype = np.result_type(values)
+    return max(CLOSE, 8 * float(np.finfo(dtype).eps)) if np.issubdtype(dtype, np.floating) else CLOSE

@@ -6,7 +6,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-Measure = Literal["mass", "volume"]
+Weighting = Literal["mass", "volume"]
+"""What particles weigh in an average: their mass, or their volume."""
 
 
 class Operations(Protocol):
@@ -33,7 +34,7 @@ class Operations(Protocol):
         """
 
     def solve_momentum(self, dt: float) -> None:
-        """Advance the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""
+        """Update the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
         """Nodes to particles: velocity, as the velocity update has it, and position.
@@ -50,7 +51,7 @@ class Operations(Protocol):
     def update_stress(self, dt: float) -> None:
         """Deformation, volume ratio, pressure and stress of every particle."""
 
-    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
+    def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
         """x ← x + dt ṽ and v ← flip (v + Δṽ) + (1 - flip) ṽ, with ṽ the new nodal velocity at the particle
         and Δṽ what the step changed in it. Used by velocity updates.
 
@@ -58,10 +59,10 @@ class Operations(Protocol):
         diagonal D = Σ N (x_node - x̄)²; for velocity updates that say ``affine = True``.
         """
 
-    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+    def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
         """Average of a particle field over the grid, ``(n,)``: to the nodes and back to the particles."""
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
+    def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
         """Average of a particle field around each node, Σ w N f / Σ w N: ``(n,)`` to nodes.
 
         The weight w is the mass or the volume; particles whose law has a pressure of its own have no part in

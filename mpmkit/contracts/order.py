@@ -19,4 +19,4 @@ class UpdateOrder(Plugin):
 
     @abstractmethod
     def step(self, ops: Operations, dt: float) -> None:
-        """Advance the scene by ``dt`` seconds."""
+        """Take the scene forward by ``dt`` seconds."""

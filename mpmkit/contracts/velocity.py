@@ -19,4 +19,4 @@ class VelocityUpdate(Plugin):
 
     @abstractmethod
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        """Update positions and velocities, by ``ops.advance`` or by mappings of its own."""
+        """Update positions and velocities, by ``ops.move_particles`` or by mappings of its own."""

@@ -9,6 +9,7 @@ from .box import Box
 from .cylinder import Cylinder
 from .frustum import Frustum
 from .mesh import Mesh
+from .overlap import shared_volume
 from .sampling import Sample, expected_count, sample
 from .sphere import Sphere
 
@@ -33,4 +34,5 @@ __all__ = [
     "Sphere",
     "expected_count",
     "sample",
+    "shared_volume",
 ]

@@ -25,14 +25,17 @@ class Shape(BaseModel):
     lattice point that falls on a face is taken is then not left to rounding, and a symmetric body on a
     symmetric lattice gets symmetric particles.
 
-    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_measure`` and ``_volume``; one that is read
-    from a file gives ``files``, ``content`` and ``content_name`` as well.
+    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_size``, ``_volume`` and
+    ``_volume_between``; one that is read from a file gives ``files``, ``content`` and ``content_name`` as
+    well.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
     turned: ClassVar[bool] = False
     """Whether in 3-D it is a body of revolution about the vertical through ``middle``."""
+    tolerance: ClassVar[float] = TOLERANCE
+    """Part of its largest extent by which a point may miss its surface and still be on it."""
     files: ClassVar[tuple[str, ...]] = ()
     """Fields that name a file from which it is read."""
 
@@ -64,7 +67,7 @@ class Shape(BaseModel):
         self._require(space)
         points = np.asarray(points, dtype=float)
         lower, upper = self._bounds(space)
-        tolerance = TOLERANCE * max(top - bottom for bottom, top in zip(lower, upper, strict=True))
+        tolerance = self.tolerance * max(top - bottom for bottom, top in zip(lower, upper, strict=True))
         inside = self._contains(points, space, tolerance)
         return inside & (points[:, 0] >= -tolerance) if space.radial else inside
 
@@ -85,6 +88,22 @@ class Shape(BaseModel):
         """
         self._require(space)
         return float(self._volume(space))
+
+    def volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        """Volume, m³, of the part between two corners, m, each (dim,), as :meth:`volume` counts it.
+
+        It is exact to rounding for boxes and meshes, and to about 1e-10 of the volume for round shapes.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        least, most = self.bounds(space)
+        low, high = np.maximum(lower, least), np.minimum(upper, most)
+        if (low >= high).any():
+            return 0.0
+        if (low == least).all() and (high == most).all():
+            return self.volume(space)
+        return float(self._volume_between(low, high, space))
 
     def middle(self, space: Space) -> tuple[float, float] | None:
         """Where in 3-D planes x = const and y = const cut it into equal quarters, m; None if they do not.
@@ -149,6 +168,9 @@ class Shape(BaseModel):
 
     @abstractmethod
     def _volume(self, space: Space) -> float: ...
+
+    @abstractmethod
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float: ...
 
 
 def squared_distance(points: np.ndarray, centre: list[float]) -> np.ndarray:

@@ -60,3 +60,6 @@ class Box(Shape):
     def _volume(self, space: Space) -> float:
         # π (r₁² − r₀²) h = 2π · mean radius · area, without the cancellation of the squares of a thin ring.
         return self._size(space) * (math.pi * (self.lower[0] + self.upper[0]) if space.radial else 1.0)
+
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        return Box(kind="box", lower=lower.tolist(), upper=upper.tolist())._volume(space)

@@ -14,20 +14,22 @@ from ..errors import CaseError
 from ..output.content_names import name_by_content
 from ..spaces import Space
 from .base import Shape
-from .mesh_file import as_ply, read_surface
+from .crossing import crossing
+from .mesh_file import as_ply, read_surface, require_file
 
 
 class Mesh(Shape):
     """Solid inside a closed surface of triangles or quadrilaterals, x = scale · x_file + translate.
 
-    Only in 3-D; needs ``mpmkit[mesh]``. Normals that point inwards are turned; a shell within another is a
-    cavity.
+    Only in 3-D; needs libigl and trimesh. Normals that point inwards are turned; a shell within another is a
+    cavity. Shells that overlap and surfaces that cross themselves are refused, and so is a file of more than
+    1 GiB.
     """
 
     kind: Literal["mesh"]
     file: str = Field(
-        description="path to a closed surface mesh that meshio reads (STL, OBJ, PLY, VTU, ...); "
-        "a relative one starts from the folder of the case file"
+        description="path to a closed surface mesh (STL, OBJ, PLY, or what meshio reads: VTU, ...) of at "
+        "most 1 GiB; a relative one starts from the folder of the case file"
     )
     scale: float = Field(
         default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
@@ -36,6 +38,7 @@ class Mesh(Shape):
         "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
     )
 
+    tolerance = 1e-6  # the file may hold its corners in single precision
     files = ("file",)
 
     def content(self, field: str) -> bytes:
@@ -49,10 +52,7 @@ class Mesh(Shape):
 
     def _loaded(self) -> tuple[Any, str]:
         path = Path(self.file).absolute()
-        try:
-            changed = path.stat().st_mtime_ns
-        except (OSError, ValueError):
-            raise CaseError(f"the mesh's file is {self.file}, but there is no such file") from None
+        changed = require_file(str(path), self.file).st_mtime_ns
         shift = (0.0, 0.0, 0.0) if self.translate is None else tuple(self.translate)
         # The time of change is part of the key, so that a process that rewrites a mesh reads the new one.
         return _load(str(path), changed, self.file, self.scale, shift)
@@ -82,8 +82,6 @@ class Mesh(Shape):
         vertices, faces = surface.vertices - middle, np.asarray(surface.faces)
         points = points - middle
         inside = igl.fast_winding_number(vertices, faces, points) > 0.5
-        # Not the caller's 1e-9, but 1e-6: the file may hold its corners in single precision, too.
-        tolerance = _TOLERANCE * float(np.ptp(surface.bounds, axis=0).max())
         unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
         distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
         return inside | (distance <= tolerance)  # farther away the distance is nan
@@ -94,9 +92,38 @@ class Mesh(Shape):
     def _volume(self, space: Space) -> float:
         return float(self._surface().volume)
 
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        surface = self._surface()
+        part = np.asarray(surface.vertices), np.asarray(surface.faces)
+        for axis in (1, 2):
+            part = _beyond(part, axis, lower[axis], 1)
+            part = _beyond(part, axis, upper[axis], -1)
+        return _volume_beyond(part, lower[0]) - _volume_beyond(part, upper[0])
 
-_TOLERANCE = 1e-6
-"""Part of a mesh's largest extent by which a point may miss its surface and still be on it."""
+
+def _beyond(
+    surface: tuple[np.ndarray, np.ndarray], axis: int, place: float, sign: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and triangles of the part of a surface above a plane (sign 1) or below it (-1), left open."""
+    from trimesh.intersections import slice_faces_plane
+
+    vertices, faces = surface
+    if len(faces) == 0:
+        return surface
+    normal = np.eye(3)[axis]
+    return slice_faces_plane(vertices, faces, sign * normal, place * normal)[:2]
+
+
+def _volume_beyond(surface: tuple[np.ndarray, np.ndarray], x: float) -> float:
+    """∮ (X − x) n_X dA over the part of a surface with X ≥ x, m³.
+
+    By Gauss's theorem that is the volume beyond x of the solid, though the cuts are left open: the integrand
+    is zero on a cut at x and on cuts along X.
+    """
+    vertices, faces = _beyond(surface, 0, x, 1)
+    a, b, c = vertices[faces.T]
+    area = np.cross(b - a, c - a)[:, 0] / 2
+    return float(area @ ((a + b + c)[:, 0] / 3 - x))
 
 
 @lru_cache(maxsize=8)
@@ -111,7 +138,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
     except ImportError:
         raise CaseError(
             f"the mesh's file is {shown}, but bodies given as a mesh need libigl and trimesh: "
-            "pip install 'mpmkit[mesh]'"
+            "pip install libigl trimesh, or pip install '.[mesh]' in a clone of mpmkit"
         ) from None
     vertices, faces = read_surface(path, shown)
     name = name_by_content(as_ply(vertices, faces), ".ply")
@@ -128,9 +155,33 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
         )
     vertices = np.asarray(surface.vertices) * scale + shift
     closed = trimesh.Trimesh(vertices, _outward(vertices, np.asarray(surface.faces)), process=False)
-    if not closed.volume > 0:
+    place = crossing(np.asarray(closed.vertices), np.asarray(closed.faces))
+    if place is not None:
+        raise CaseError(
+            f"the mesh's file is {shown}, but its surface crosses itself, or shells of it overlap, near "
+            f"({', '.join(f'{x:.4g}' for x in place)}) m, so that it does not say what is inside; they must "
+            "be united (a boolean union) in the program that wrote the file"
+        )
+    if not _volume(closed.vertices, closed.faces) > 0:
         raise CaseError(f"the mesh's file is {shown}, but its surface encloses no volume")
     return closed, name
+
+
+def _volume(vertices: np.ndarray, faces: np.ndarray) -> float:
+    """Volume, m³, that a closed surface encloses; negative if its normals point inwards."""
+    a, b, c = (vertices - vertices.mean(axis=0))[faces.T]
+    with np.errstate(all="ignore"):  # an overflow gives no number above 0
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def _just_inside(vertices: np.ndarray, faces: np.ndarray, inward: bool) -> np.ndarray:
+    """A point, m, (3,), beneath the largest triangle of a shell whose normals may point inwards."""
+    a, b, c = vertices[faces.T]
+    normal = np.cross(b - a, c - a)
+    area = np.linalg.norm(normal, axis=1)
+    largest = int(np.argmax(area))
+    depth = 1e-5 * np.ptp(vertices[faces], axis=(0, 1)).max() * (1 if inward else -1)
+    return (a + b + c)[largest] / 3 + depth * normal[largest] / max(area[largest], 1e-300)
 
 
 def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -139,15 +190,19 @@ def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     A shell in an odd number of others is the wall of a cavity and encloses a negative volume.
     """
     import igl
-    import trimesh
 
     faces, shells = igl.bfs_orient(faces)  # neighbours now agree
     count = int(shells.max()) + 1
     for shell in range(count):
         own = shells == shell
-        inward = trimesh.Trimesh(vertices, faces[own], process=False).volume < 0
-        # Each shell around adds ±1, however it is turned: the sum is odd if their number is.
-        depth = igl.winding_number(vertices, faces[~own], vertices[faces[own][0, 0]]) if count > 1 else 0
-        if inward != (round(depth) % 2 == 1):
+        inward = _volume(vertices, faces[own]) < 0
+        # Each shell around adds ±1, however it is turned: the sum is odd if their number is. A corner will
+        # not do, because it may lie on another shell that this one touches.
+        depth = (
+            igl.winding_number(vertices, faces[~own], _just_inside(vertices, faces[own], inward))
+            if count > 1
+            else 0
+        )
+        if inward != (abs(depth) % 2 > 0.5):
             faces[own] = faces[own][:, ::-1]
     return faces

@@ -9,9 +9,16 @@ import numpy as np
 
 from ..spaces import Space
 from .base import Shape
+from .lattice import Rows, rows
 
 _SLAB = 1 << 18
 """Lattice points looked at together: their temporaries fit a cache, or nearly."""
+
+_THINNEST = 0.5
+"""Least thickness of a body, in spacings of the particles."""
+
+_SAME_SHARE = 1e-9
+"""Relative difference up to which a cut leaves the same share of the body as of its boxes."""
 
 Corners = tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]
 
@@ -23,7 +30,7 @@ class Sample:
     Attributes:
         position: m, (n, dim).
         volume: initial volume, m³, (n,), as the space counts it.
-        half_size: half the lattice spacing, m, (n, dim).
+        half_size: half the side lengths of their boxes, m, (n, dim).
     """
 
     position: np.ndarray
@@ -40,50 +47,78 @@ def sample(
     per_axis: Sequence[int],
     keep: Corners | None = None,
 ) -> Sample:
-    """Particles at x_a = origin_a + (i + (s + 1/2)/m_a) Δx, s = 0 … m_a − 1, inside the shape.
+    """Particles in the boxes of the lattice with spacing s_a = Δx/m_a whose centres are inside the shape.
 
-    Their volumes are those of the lattice's boxes times one factor, by which they add up to the exact volume
-    of the whole body: its total mass is then exact, though its surface on the lattice is a staircase. The
-    factor is found before ``keep`` is applied, so that a body cut by symmetry planes keeps its exact share.
+    Boxes are cut where the body ends along an axis and where ``keep`` ends, so that the outline of the body
+    is kept: the particle is at the centre of its cut box. A row that is cut shares its width evenly with its
+    neighbour, so that none is a sliver (:func:`mpmkit.geometry.lattice.rows`). Boxes that are not cut are
+    exactly those of the lattice.
+
+    The volumes are those of the boxes times one factor, by which they add up to the exact volume of the part
+    that is kept: its mass is then exact, though a slanted surface is a staircase on the lattice. Where the
+    kept part has the same share of the body as of the boxes, as at a symmetry plane through the middle, the
+    factor is that of the whole body: a quarter is then the quarter of the whole to the bit.
 
     Args:
         shape: the body.
-        space: the space of the scene; if axisymmetric, no particle stands at r ≤ 0, where it has no volume.
+        space: the space of the scene.
         origin: a node of the grid, m, (dim,).
         cell_size: Δx, m.
         per_axis: m_a, particles in a cell along each axis, (dim,).
-        keep: lower and upper corner, m, of the box outside which particles are dropped, such as the domain.
-            Its lower faces belong to it and its upper ones do not: boxes side by side share no particle.
+        keep: lower and upper corner, m, of the box outside which the body is cut off, such as the domain.
 
     Returns:
-        The particles, in the order of the lattice, last axis fastest; none if the body slips between the
-        lattice's points, which the caller reports.
+        The particles, in the order of the lattice, last axis fastest; none if the part is thinner than half a
+        spacing along an axis or holds the centre of no box, which the caller reports.
 
     Raises:
         CaseError: the space cannot hold the shape.
     """
-    total = shape.volume(space)
     origin = np.asarray(origin, dtype=float)
     spacing = cell_size / np.asarray(per_axis, dtype=float)
-    positions, volumes, raw = [], [], 0.0
-    for points in _slabs(*shape.bounds(space), origin, spacing):
+    lower, upper = shape.bounds(space)
+    near = shape.tolerance * float((upper - lower).max())
+    low, high = (lower, upper) if keep is None else _cut(lower, upper, keep, near)
+    positions, volumes, sides = [np.empty((0, space.dim))], [np.empty(0)], [np.empty((0, space.dim))]
+    raw = raw_kept = 0.0
+    axes = []
+    if (high - low >= _THINNEST * spacing - near).all():
+        for a in range(space.dim):
+            cuts = sorted({lower[a], low[a], high[a], upper[a]})
+            axes.append(
+                rows(
+                    cuts,
+                    cuts.index(low[a]),
+                    origin=origin[a],
+                    cell_size=cell_size,
+                    per_cell=per_axis[a],
+                    near=near,
+                )
+            )
+    for points, size, kept in _slabs(axes):
         inside = shape.contains(points, space)
-        if space.radial:
-            inside &= points[:, 0] > 1e-9 * spacing[0]
-        points = points[inside]
-        volume = space.particle_volume(points, spacing)
+        points, size, kept = points[inside], size[inside], kept[inside]
+        volume = space.particle_volume(points, size)
         raw += float(volume.sum())
-        if keep is not None:
-            lower, upper = (np.asarray(corner, dtype=float) - 1e-9 * spacing for corner in keep)
-            kept = ((points >= lower) & (points < upper)).all(axis=1)
-            points, volume = points[kept], volume[kept]
-        positions.append(points)
-        volumes.append(volume)
-    position = np.concatenate(positions) if positions else np.empty((0, space.dim))
-    volume = np.concatenate(volumes) if volumes else np.empty(0)
+        raw_kept += float(volume[kept].sum())
+        positions.append(points[kept])
+        volumes.append(volume[kept])
+        sides.append(size[kept])
+    volume = np.concatenate(volumes)
     if len(volume):
-        volume *= total / raw
-    return Sample(position, volume, np.tile(spacing / 2, (len(position), 1)))
+        whole, part = shape.volume(space), shape.volume_between(low, high, space)
+        same_share = abs(part / whole - raw_kept / raw) <= _SAME_SHARE
+        volume *= whole / raw if same_share else part / raw_kept
+    return Sample(np.concatenate(positions), volume, np.concatenate(sides) / 2)
+
+
+def _cut(lower: np.ndarray, upper: np.ndarray, keep: Corners, near: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the part of a box that ``keep`` leaves; a face within ``near`` of the box's does not cut."""
+    low, high = (np.asarray(corner, dtype=float) for corner in keep)
+    return (
+        np.where(low > lower + near, low, lower),
+        np.where(high < upper - near, high, upper),
+    )
 
 
 def expected_count(
@@ -117,25 +152,21 @@ def expected_count(
     return count
 
 
-def _slabs(
-    lower: np.ndarray, upper: np.ndarray, origin: np.ndarray, spacing: np.ndarray
-) -> Iterator[np.ndarray]:
-    """Points (n, dim) of the lattice in a box, a few layers along the first axis at a time.
-
-    The box is widened by a millionth of the spacing: what lies on its faces is for the shape to decide.
-    """
-    first = np.ceil((lower - origin) / spacing - 0.5 - 1e-6).astype(np.int64)
-    last = np.floor((upper - origin) / spacing - 0.5 + 1e-6).astype(np.int64)
-    if (last < first).any():
+def _slabs(axes: list[Rows]) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Centres (n, dim), side lengths (n, dim) and whether they are kept (n,) of the boxes that rows make,
+    a few layers along the first axis at a time; nothing without axes."""
+    if not axes:
         return
-    axes = [
-        origin[axis] + (np.arange(first[axis], last[axis] + 1) + 0.5) * spacing[axis]
-        for axis in range(len(origin))
-    ]
-    layers = max(1, _SLAB // int(np.prod([len(axis) for axis in axes[1:]])))
-    for start in range(0, len(axes[0]), layers):
-        mesh = np.meshgrid(axes[0][start : start + layers], *axes[1:], indexing="ij", copy=False)
-        points = np.empty((mesh[0].size, len(axes)))
-        for axis, values in enumerate(mesh):
-            points[:, axis] = values.ravel()
-        yield points
+    layers = max(1, _SLAB // int(np.prod([len(axis.centre) for axis in axes[1:]])))
+    for start in range(0, len(axes[0].centre), layers):
+        part = slice(start, start + layers)
+        counts = [len(axes[0].centre[part]), *(len(axis.centre) for axis in axes[1:])]
+        index = np.indices(counts).reshape(len(axes), -1)
+        index[0] += start
+        centre = np.empty((index.shape[1], len(axes)))
+        width = np.empty_like(centre)
+        kept = np.ones(len(centre), dtype=bool)
+        for a, axis in enumerate(axes):
+            centre[:, a], width[:, a] = axis.centre[index[a]], axis.width[index[a]]
+            kept &= axis.kept[index[a]]
+        yield centre, width, kept

@@ -10,6 +10,7 @@ import numpy as np
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape, disc_area, squared_distance
+from .revolved import part_of_revolved
 
 
 class Sphere(Shape):
@@ -45,3 +46,15 @@ class Sphere(Shape):
         if space.dim == 2 and not space.radial:
             return disc_area(self.radius)
         return 4 / 3 * math.pi * self.radius**3
+
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        *middle, height = self.centre
+
+        def heights(radius: float) -> list[float]:
+            half = math.sqrt(max(self.radius**2 - radius**2, 0.0))
+            return [height - half, height + half]
+
+        def radius(z: np.ndarray) -> np.ndarray:
+            return np.sqrt(np.maximum(self.radius**2 - (z - height) ** 2, 0.0))
+
+        return part_of_revolved(radius, heights, middle, lower, upper, space)

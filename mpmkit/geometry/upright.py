@@ -10,6 +10,7 @@ import numpy as np
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape, squared_distance
+from .revolved import part_of_revolved
 
 
 class Upright(Shape):
@@ -48,14 +49,16 @@ class Upright(Shape):
 
     def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
         *middle, bottom = self._foot(space)
-        bottom_radius, top_radius = self._radii()
         level = points[:, -1] - bottom
         inside = (level >= -tolerance) & (level <= self.height + tolerance)
-        # Above the tip of a full cone, within the tolerance, the radius would come out negative.
-        radius = (
-            np.maximum(bottom_radius + (top_radius - bottom_radius) / self.height * level, 0.0) + tolerance
-        )
+        radius = self._radius(level) + tolerance
         return inside & (squared_distance(points, middle) <= radius * radius)
+
+    def _radius(self, level: np.ndarray) -> np.ndarray:
+        """Radius, m, at heights above the bottom, m."""
+        bottom, top = self._radii()
+        # Above the tip of a full cone, within the tolerance, the radius would come out negative.
+        return np.maximum(bottom + (top - bottom) / self.height * level, 0.0)
 
     def _size(self, space: Space) -> float:
         if space.dim == 3:
@@ -68,3 +71,12 @@ class Upright(Shape):
             return self._size(space)
         bottom, top = self._radii()
         return math.pi * self.height / 3 * (bottom**2 + bottom * top + top**2)
+
+    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        *middle, foot = self._foot(space)
+        bottom, top = self._radii()
+
+        def heights(radius: float) -> list[float]:
+            return [] if top == bottom else [foot + (radius - bottom) / (top - bottom) * self.height]
+
+        return part_of_revolved(lambda z: self._radius(z - foot), heights, middle, lower, upper, space)

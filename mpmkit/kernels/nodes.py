@@ -10,9 +10,10 @@ Setting the ghosts' normal velocity to zero instead, as is often done, takes the
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
 
 ``nodes`` is (count, NODE). Nodes that no particle can reach are zero and left out: ``rows`` holds the first
-node and the one after the last of each row that is reached, ``tasks`` cuts the rows into pieces of about
-equal load, and ``mirrors`` lists (ghost, image, node of the wall), face by face from ``face_first`` on.
-``faces[a, side]`` is one of the codes below.
+node and the one after the last of each row that is reached, and ``tasks`` cuts the rows into pieces of about
+equal load. ``mirrors`` lists (ghost, image, node of the wall) of ``PLANES`` planes an axis, each from its
+entry of ``plane_first`` on. Entries of one plane have no node in common, so that they can be handled in
+parallel; images of two planes may be the same nodes. ``faces[a, side]`` is one of the codes below.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ from .compile import CHUNK, chunk_count, function, inline, kernel
 from .scatter import CONTACT, NODE
 
 FEW = 1000
-"""Nodes of a face below which more threads than one are not worth their start."""
+"""Nodes of a plane below which more threads than one are not worth their start."""
+PLANES = 3
+"""Planes of ghosts an axis: of its lower face, of its upper face, and the upper face of a periodic axis."""
 OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
 
 
@@ -82,55 +85,69 @@ def _parity(face, axis, dim, vectors):
 
 
 @function()
-def _reflect(nodes, faces, mirrors, face_first, first, last, vectors, folding):
+def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
     dim = len(faces)
     for step in range(dim):
         a = step if folding else dim - 1 - step  # filling undoes folding in the opposite order
-        for side in range(2):
-            face, f = faces[a, side], 2 * a + side
-            if face_first[f] < face_first[f + 1]:
+        for plane in range(PLANES):
+            begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
+            if begin < end:
+                face = faces[a, min(plane, 1)]
                 contact = 1 << a if face == FRICTION and vectors else 0
-                of_face, sign = mirrors[face_first[f] : face_first[f + 1]], _parity(face, a, dim, vectors)
-                if len(of_face) < FEW:
-                    _move_few(nodes, of_face, contact, first, last, sign, folding)
+                of_plane, sign = mirrors[begin:end], _parity(face, a, dim, vectors)
+                if len(of_plane) < FEW:
+                    _move_few(nodes, of_plane, contact, first, last, sign, folding)
                 else:
-                    _move_many(nodes, of_face, contact, first, last, sign, folding)
+                    _move_many(nodes, of_plane, contact, first, last, sign, folding)
 
 
 @function()
-def fold(nodes, faces, mirrors, face_first, first, last, vectors):
+def fold(nodes, faces, mirrors, plane_first, first, last, vectors):
     """Add what lies on ghost nodes to their images, slots first..last-1, and clear the ghosts.
 
     With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
     """
-    _reflect(nodes, faces, mirrors, face_first, first, last, vectors, True)
+    _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, True)
 
 
 @function()
-def fill(nodes, faces, mirrors, face_first, first, last, vectors):
+def fill(nodes, faces, mirrors, plane_first, first, last, vectors):
     """Give ghost nodes the values of their images, slots first..last-1; the transpose of ``fold``."""
-    _reflect(nodes, faces, mirrors, face_first, first, last, vectors, False)
+    _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, False)
 
 
 @function()
-def _constrain(nodes, faces, mirrors, face_first, friction, solved):
-    """Boundary conditions on the velocity and, once ``solved``, on its change."""
-    for a in range(len(faces)):
-        for side in range(2):
-            face, f = faces[a, side], 2 * a + side
-            if face != PERIODIC and face_first[f] < face_first[f + 1]:
-                of_face = mirrors[face_first[f] : face_first[f + 1]]
-                _hold(nodes, len(faces), of_face, face, a, 1 - 2 * side, friction[a, side], solved)
+def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
+    """Boundary conditions on the velocity and, once ``solved``, on its change.
+
+    Where walls meet, a node has the conditions of all of them. The pushes of all Coulomb walls come first,
+    then the other walls, then the drag of the Coulomb walls: no axis is before another.
+    """
+    dim = len(faces)
+    rubs = (faces == FRICTION).any()
+    grip = np.zeros(len(mirrors) if rubs and solved else 0)  # largest drag on each wall node, m/s
+    for turn in range(3):
+        for a in range(dim):
+            for side in range(2):
+                face, plane = faces[a, side], PLANES * a + side
+                of_face = mirrors[plane_first[plane] : plane_first[plane + 1]]
+                if face == FRICTION and solved and turn != 1:
+                    its_grip = grip[plane_first[plane] : plane_first[plane + 1]]
+                    if turn == 0:
+                        _push(nodes, dim, of_face, a, 1 - 2 * side, friction[a, side], its_grip)
+                    else:
+                        _drag(nodes, dim, of_face, a, its_grip)
+                elif face == FRICTION and turn == 0:
+                    _keep_contact(nodes, of_face, a)
+                elif face in (MIRROR, STICK) and turn == 1:
+                    _hold(nodes, dim, of_face, face, a, solved)
 
 
 @function()
-def _hold(nodes, dim, mirrors, face, a, inward, coefficient, solved):
-    """The condition of one face on the nodes in its plane."""
+def _hold(nodes, dim, mirrors, face, a, solved):
+    """Slip and stick walls hold the nodes in their plane along the normal, and along all axes."""
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
-        if face == FRICTION:
-            _touch(node, dim, a, inward, coefficient, solved)
-            continue
         for d in range(dim):
             if d == a or face == STICK:
                 node[1 + d] = 0.0
@@ -139,45 +156,61 @@ def _hold(nodes, dim, mirrors, face, a, inward, coefficient, solved):
 
 
 @function()
-def _touch(node, dim, a, inward, coefficient, solved):
-    """Coulomb's law at a node of a wall that pushes and does not pull.
+def _keep_contact(nodes, mirrors, a):
+    """The normal velocity of nodes that touch a Coulomb wall."""
+    for k in range(len(mirrors)):
+        node = nodes[mirrors[k, 2]]
+        if int(node[CONTACT]) & 1 << a:
+            node[1 + a] = 0.0
+
+
+@function()
+def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
+    """A Coulomb wall pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
 
     Whether a node is in contact is decided once a step, by the momentum equation: it is if the wall must take
     up velocity towards it. Until the next decision its normal velocity is held, whatever its sign; a contact
     that opened as soon as the mapped velocity turned would strain the last cell on approach but never on
-    departure, and with USF and MUSL feed energy in. Drag takes at most coefficient × push from the slip.
+    departure, and with USF and MUSL feed energy in.
     """
-    contacts, this = int(node[CONTACT]), 1 << a  # a node in a corner may touch one wall and not the other
-    if not solved:
-        if contacts & this:
+    for k in range(len(mirrors)):
+        node = nodes[mirrors[k, 2]]
+        contacts, this = int(node[CONTACT]), 1 << a  # a node in a corner may touch one wall and not the other
+        push = -inward * node[1 + a]
+        if push > 0.0:
+            node[CONTACT] = contacts | this
+            node[1 + dim + a] -= node[1 + a]
             node[1 + a] = 0.0
-        return
-    push = -inward * node[1 + a]
-    if push <= 0.0:
-        node[CONTACT] = contacts & ~this
-        return
-    node[CONTACT] = contacts | this
-    node[1 + dim + a] -= node[1 + a]
-    node[1 + a] = 0.0
-    slip = 0.0
-    for d in range(dim):
-        if d != a:
-            slip += node[1 + d] ** 2
-    slip = math.sqrt(slip)
-    lost = min(1.0, coefficient * push / slip) if slip > 0.0 else 0.0
-    for d in range(dim):
-        if d != a:
-            node[1 + dim + d] -= lost * node[1 + d]
-            node[1 + d] -= lost * node[1 + d]
+            grip[k] = coefficient * push
+        else:
+            node[CONTACT] = contacts & ~this
+
+
+@function()
+def _drag(nodes, dim, mirrors, a, grip):
+    """Coulomb's law: drag takes at most coefficient × push from the slip, and never turns it round."""
+    for k in range(len(mirrors)):
+        if grip[k] > 0.0:
+            node = nodes[mirrors[k, 2]]
+            slip = 0.0
+            for d in range(dim):
+                if d != a:
+                    slip += node[1 + d] ** 2
+            slip = math.sqrt(slip)
+            lost = min(1.0, grip[k] / slip) if slip > 0.0 else 0.0
+            for d in range(dim):
+                if d != a:
+                    node[1 + dim + d] -= lost * node[1 + d]
+                    node[1 + d] -= lost * node[1 + d]
 
 
 @kernel()
-def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, face_first):
+def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, plane_first):
     """Σ w / room, from 1 to ``most``, at all nodes but ghosts, which count to their images.
 
     Leaves ``pairs`` empty.
     """
-    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
@@ -186,9 +219,9 @@ def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, face
 
 
 @kernel()
-def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, face_first):
+def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, plane_first):
     """Σ w f / crowding at every node, with what lies on ghosts folded in."""
-    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
@@ -196,23 +229,23 @@ def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, face_first):
 
 
 @kernel()
-def divide_pairs(pairs, average, rows, tasks, faces, mirrors, face_first):
+def divide_pairs(pairs, average, rows, tasks, faces, mirrors, plane_first):
     """Σ w f / Σ w at every node, zero where nothing is, with what lies on ghosts folded in and filled back.
 
     Leaves ``pairs`` empty, for the next average.
     """
-    fold(pairs, faces, mirrors, face_first, 0, 2, False)
+    fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
                 weight = pairs[i, 0]
                 average[i, 0] = pairs[i, 1] / weight if weight > 0.0 else 0.0
                 pairs[i, 0] = pairs[i, 1] = 0.0
-    fill(average, faces, mirrors, face_first, 0, 1, False)
+    fill(average, faces, mirrors, plane_first, 0, 1, False)
 
 
 @kernel()
-def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, face_first, friction):
+def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, plane_first, friction):
     """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are."""
     dim = len(faces)
     for t in prange(len(tasks) - 1):
@@ -222,12 +255,12 @@ def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, face_first, frictio
                 if m > 0.0:
                     for d in range(dim):
                         nodes[i, 1 + d] /= m
-    _constrain(nodes, faces, mirrors, face_first, friction, False)
-    fill(nodes, faces, mirrors, face_first, 1, 1 + dim, True)
+    _constrain(nodes, faces, mirrors, plane_first, friction, False)
+    fill(nodes, faces, mirrors, plane_first, 1, 1 + dim, True)
 
 
 @kernel()
-def solve_momentum(nodes, rows, tasks, faces, mirrors, face_first, friction, dt):
+def solve_momentum(nodes, rows, tasks, faces, mirrors, plane_first, friction, dt):
     """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled."""
     dim = len(faces)
     for t in prange(len(tasks) - 1):
@@ -239,5 +272,6 @@ def solve_momentum(nodes, rows, tasks, faces, mirrors, face_first, friction, dt)
                         change = dt * nodes[i, 1 + dim + d] / m
                         nodes[i, 1 + d] += change
                         nodes[i, 1 + dim + d] = change
-    _constrain(nodes, faces, mirrors, face_first, friction, True)
-    fill(nodes, faces, mirrors, face_first, 1, 1 + 2 * dim, True)
+    _constrain(nodes, faces, mirrors, plane_first, friction, True)
+    # With contact, the record's last: a ghost in the plane of a Coulomb wall touches it where its image does.
+    fill(nodes, faces, mirrors, plane_first, 1, CONTACT + 1, True)

@@ -5,7 +5,7 @@ from .history import History
 from .json_file import write_json
 from .log import open_log
 from .run_directory import RunDirectory
-from .summary import first_crossing, summarise
+from .summary import summarise
 from .variables import PARTICLE_VARIABLES, Variable
 
 __all__ = [
@@ -14,7 +14,6 @@ __all__ = [
     "History",
     "RunDirectory",
     "Variable",
-    "first_crossing",
     "open_log",
     "read_frame",
     "read_frames",

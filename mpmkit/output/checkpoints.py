@@ -21,13 +21,18 @@ from .atomic import replacing
 LOGGER = logging.getLogger("mpmkit")
 KEPT = 2
 """Should the last one be damaged, there is the one before."""
-MAGIC = b"mpmkit checkpoint 1 sha256 "
+ANY_VERSION = b"mpmkit checkpoint "
+MAGIC = ANY_VERSION + b"2 sha256 "
 WORDS = "words"
 """Entry of the archive that holds what is no array, as JSON."""
 
 
 class Damaged(Exception):
     """A file that is no checkpoint, or only a part of one."""
+
+
+class OfAnotherVersion(Damaged):
+    """A checkpoint that another version of mpmkit wrote."""
 
 
 class Checkpoints:
@@ -65,11 +70,16 @@ class Checkpoints:
         """Arrays and words of the last checkpoint that is whole.
 
         Raises:
-            CaseError: there is none.
+            CaseError: there is none, or another version of mpmkit wrote it.
         """
         for path in self.paths():
             try:
                 return read(path)
+            except OfAnotherVersion:
+                raise CaseError(
+                    f"the checkpoint '{path}' was written by another version of mpmkit and cannot be read by "
+                    "this one: go on with that version, or run the case again"
+                ) from None
             except Damaged as damage:
                 LOGGER.warning("the checkpoint '%s' %s; the one before it is used", path, damage)
         raise CaseError(f"'{self.directory}' has no checkpoint to go on from")
@@ -77,6 +87,12 @@ class Checkpoints:
     def paths(self) -> list[Path]:
         """Files of the checkpoints, the newest first."""
         return sorted(self.directory.glob("step_*.checkpoint"), reverse=True)
+
+    def keep_last(self) -> None:
+        """Remove all of them but the newest."""
+        with suppress(OSError):
+            for path in (*self.paths()[1:], *self.directory.glob(".*.partial")):
+                path.unlink()
 
     def remove(self) -> None:
         """Remove all of them, and their directory if nothing else is in it."""
@@ -97,6 +113,8 @@ def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     except OSError as error:
         raise Damaged(f"cannot be read: {error.strerror}") from error
     head, _, body = content.partition(b"\n")
+    if head.startswith(ANY_VERSION) and not head.startswith(MAGIC):
+        raise OfAnotherVersion("is of another version")
     if not head.startswith(MAGIC):
         raise Damaged("is none")
     if hashlib.sha256(body).hexdigest().encode() != head[len(MAGIC) :]:

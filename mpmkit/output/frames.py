@@ -20,24 +20,49 @@ class FrameWriter:
 
     Args:
         directory: the ``frames/`` of a run; made if it is not there.
-        space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, 0, b).
-        frames: times by the names of their files, of a run that goes on; all others there are removed.
+        space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, b, 0), so
+            that a viewer shows the scene from the front when it opens.
+        goes_on: whether the frames of a run that goes on are there; ``restore`` says which of them stay.
     """
 
-    def __init__(self, directory: Path, space: Space, frames: Mapping[str, float] | None = None) -> None:
+    def __init__(self, directory: Path, space: Space, goes_on: bool = False) -> None:
         self.directory = Path(directory)
         self._planar = space.dim == 2
-        self.frames: dict[str, float] = dict(frames or {})
+        self.frames: dict[str, float] = {}
+        """times, s, by the names of their files"""
         try:
             self.directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.directory, error) from error
+        if not goes_on:
+            self._remove_others()
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Names of the files, and times."""
+        return {
+            "names": np.array(list(self.frames), dtype=str),
+            "times": np.array(list(self.frames.values())),
+        }
+
+    def restore(self, state: Mapping[str, np.ndarray]) -> None:
+        """Go on after these frames; all others in the directory are removed.
+
+        Raises:
+            OutputError: where one cannot be removed, or the list cannot be written.
+        """
+        self.frames = dict(zip(map(str, state["names"]), map(float, state["times"]), strict=True))
+        self._remove_others()
+        self._write_list()
+
+    def _remove_others(self) -> None:
+        """Remove the frames that are not of this run, and the list."""
+        try:
             # The list goes first: a list without its frames would be worse than frames without a list.
             for old in (self.directory / LIST_NAME, *self.directory.glob("frame_*.vtu")):
                 if old.name not in self.frames:
                     old.unlink(missing_ok=True)
         except OSError as error:
             raise cannot_write(self.directory, error) from error
-        if self.frames:
-            self._write_list()
 
     def write(self, time: float, step: int, fields: Mapping[str, np.ndarray], position: np.ndarray) -> Path:
         """Write the particles as they are at a time, and list the frame.
@@ -65,10 +90,12 @@ class FrameWriter:
 
     def _in_space(self, values: np.ndarray) -> np.ndarray:
         if self._planar and values.ndim == 2 and values.shape[1] == 2:
-            return np.insert(values, 1, 0, axis=1)
+            return np.insert(values, 2, 0, axis=1)
         return values
 
     def _write_list(self) -> None:
+        # Someone may have deleted frames meanwhile: ParaView fails of a list that names them.
+        self.frames = {name: t for name, t in self.frames.items() if (self.directory / name).is_file()}
         root = ET.Element("VTKFile", type="Collection", version="0.1")
         collection = ET.SubElement(root, "Collection")
         for name, time in self.frames.items():
@@ -82,6 +109,8 @@ class FrameWriter:
 def read_frames(directory: Path) -> list[tuple[float, Path]]:
     """Times, s, and files of the frames of a directory, in order of time; none where there is no list.
 
+    A frame that is listed but has been deleted is left out.
+
     Raises:
         CaseError: where the list is not one.
     """
@@ -93,7 +122,7 @@ def read_frames(directory: Path) -> list[tuple[float, Path]]:
         frames = [(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in listed]
     except (ET.ParseError, KeyError, ValueError) as error:
         raise CaseError(f"'{path}' is not a list of frames: {error}") from error
-    return sorted(frames)
+    return sorted((time, file) for time, file in frames if file.is_file())
 
 
 def read_frame(path: Path) -> dict[str, np.ndarray]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .atomic import cannot_write, replacing
-from .variables import PARTICLE_VARIABLES, Variable, tensor_components
+from .variables import PARTICLE_VARIABLES, ParticleVariable, Variable, tensor_components
 
 if TYPE_CHECKING:
     import xarray
@@ -31,12 +31,20 @@ class History:
         columns: what every row holds.
         attributes: global attributes of the dataset; may be added to until the last write.
         axes: names of the axes of the space, such as ``("r", "z")``.
+        particle_variables: the particle fields that a row may hold.
     """
 
-    def __init__(self, columns: Sequence[Variable], attributes: dict[str, str], axes: Sequence[str]) -> None:
+    def __init__(
+        self,
+        columns: Sequence[Variable],
+        attributes: dict[str, Any],
+        axes: Sequence[str],
+        particle_variables: Mapping[str, ParticleVariable] = PARTICLE_VARIABLES,
+    ) -> None:
         self.attributes = attributes
         self._columns = {column.name: column for column in columns}
         self._axes = tuple(axes)
+        self._variables = particle_variables
         self._times: list[float] = []
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
         self._particles: dict[str, list[np.ndarray]] | None = None
@@ -56,7 +64,7 @@ class History:
         Args:
             time: simulated time, s.
             values: a number, or a vector ``(dim,)``, for every column, in the column's units.
-            particles: fields named in ``PARTICLE_VARIABLES`` in the order of particle numbers: ``(n,)``,
+            particles: fields named in ``particle_variables`` in the order of particle numbers: ``(n,)``,
                 vectors ``(n, dim)``, stress ``(n, 6)``. The same fields in every row.
         """
         if values.keys() != self._rows.keys():
@@ -85,8 +93,8 @@ class History:
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take up the rows of a checkpoint."""
-        self._times = state["time"].tolist()
-        self._rows = {name: list(state[f"row.{name}"]) for name in self._rows}
+        self._times, self._next_flush = state["time"].tolist(), -np.inf
+        self._rows = {name: [np.array(row) for row in state[f"row.{name}"]] for name in self._columns}
         names = [key.partition(".")[2] for key in state if key.startswith("particles.")]
         self._particles = {
             name: np.split(state[f"particles.{name}"], np.cumsum(state[f"lengths.{name}"])[:-1])
@@ -108,7 +116,7 @@ class History:
                 attributes,
             )
         for name, rows in (self._particles or {}).items():
-            of_particle = PARTICLE_VARIABLES[name]
+            of_particle = self._variables[name]
             attributes = {"units": of_particle.units, "long_name": of_particle.long_name}
             variables[name] = (("time", "particle", *of_particle.trailing), _padded(rows), attributes)
         # Units of a bare "s", without "since", so that no reader takes the numbers for dates or durations.

@@ -4,21 +4,38 @@ from __future__ import annotations
 
 import logging
 from contextlib import suppress
+from contextvars import ContextVar
 from pathlib import Path
 from types import TracebackType
 
 from .atomic import cannot_write
 
 LOGGER = logging.getLogger("mpmkit")
+RECORD = logging.getLogger("mpmkit.record")
+"""For what belongs into ``run.log`` alone: a display leaves it out."""
+_OPEN: list[RunLog] = []
+"""Logs of all runs of this process."""
+_CURRENT: ContextVar[RunLog | None] = ContextVar("run_log", default=None)
+"""Log of the run at work in this thread."""
+_LEVEL_BEFORE = [logging.NOTSET]
+"""Level of the logger before the first of them."""
 
 
 class RunLog(logging.FileHandler):
-    """A handler that listens to ``mpmkit`` until it is closed; also a context manager."""
+    """A handler that listens to ``mpmkit`` until it is closed; also a context manager.
+
+    It hears what the thread says that opened it, and not what another run says in another thread.
+    """
 
     def __init__(self, path: Path) -> None:
         super().__init__(path, encoding="utf-8")
         self.setFormatter(logging.Formatter("%(asctime)s %(levelname)-7s %(message)s"))
-        self._level_before = LOGGER.level
+        self._outer = _CURRENT.get()
+        _CURRENT.set(self)
+        self.addFilter(lambda record: _CURRENT.get() is self)
+        if not _OPEN:
+            _LEVEL_BEFORE[0] = LOGGER.level
+        _OPEN.append(self)
         if not LOGGER.isEnabledFor(logging.INFO):
             LOGGER.setLevel(logging.INFO)
         LOGGER.addHandler(self)
@@ -29,7 +46,11 @@ class RunLog(logging.FileHandler):
     def close(self) -> None:
         if self in LOGGER.handlers:  # closed once by the run, and once more by logging at exit
             LOGGER.removeHandler(self)
-            LOGGER.setLevel(self._level_before)
+            _OPEN.remove(self)
+            if not _OPEN:
+                LOGGER.setLevel(_LEVEL_BEFORE[0])
+            if _CURRENT.get() is self:
+                _CURRENT.set(self._outer)
         with suppress(OSError):  # the last lines may not fit on the disk
             super().close()
 

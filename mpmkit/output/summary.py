@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     import xarray
 
 T500_DIAMETER = 0.5
 """Spread diameter, m, at which T500 is taken."""
+LEAST_RATE = 1e-5
+"""m/s; below it nobody would call it spreading, even if the material moves."""
+UNITS = {
+    "t500": "s",
+    "final_spread": "m",
+    "final_slump": "m",
+    "final_height": "m",
+    "final_spread_rate": "m/s",
+    "at_rest_since": "s",
+    "simulated_time": "s",
+    "particles": "1",
+    "steps": "1",
+    "wall_time": "s",
+    "particle_steps_per_second": "1/s",
+}
+"""Units of the numbers of a summary."""
 TRUSTED = ("finished", "interrupted", "output-error")
 """Why a run may have ended without its last state being in doubt; any other reason is that of a guard."""
 
@@ -29,24 +43,12 @@ def trusted_rows(history: xarray.Dataset, stopped_because: str | None) -> xarray
     return history.isel(time=slice(None, -1))
 
 
-def first_crossing(time: ArrayLike, values: ArrayLike, level: float) -> float | None:
-    """Time at which ``values`` first rise to ``level``, linear between rows; None if they never do.
-
-    Values that start at the level or above have not risen to it: a body that is wide from the start has
-    no T500, rather than one of zero.
-    """
-    times, levels = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
-    rises = np.flatnonzero((levels[:-1] < level) & (levels[1:] >= level))
-    if not len(rises):
-        return None
-    before, after = rises[0], rises[0] + 1
-    part = (level - levels[before]) / (levels[after] - levels[before])
-    return float(times[before] + part * (times[after] - times[before]))
-
-
 def summarise(
     history: xarray.Dataset,
     *,
+    t500: float | None,
+    at_rest_since: float | None,
+    spread_rate: float | None,
     particles: int,
     particle_steps: int,
     steps: int,
@@ -57,10 +59,13 @@ def summarise(
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
     A run that a guard stopped never came to its final shape, and the row of its stop may be that of a
-    particle thrown out: it has no final lengths, and a T500 only from the rows before.
+    particle thrown out: it has no final lengths, and it did not come to rest.
 
     Args:
-        history: dataset of a ``History``.
+        history: dataset of a ``History``; its last row is the last state of the run.
+        t500: time to a spread of 500 mm, s.
+        at_rest_since: since when the material has been at rest, s.
+        spread_rate: rate at which the spread diameter grows at the end, m/s.
         particles: number of particles at the end.
         particle_steps: sum of their number over all steps.
         steps: number of steps done.
@@ -68,16 +73,14 @@ def summarise(
         stopped_because: why the run ended.
         plugins: the plug-ins and their versions.
     """
-    t500 = None
-    if "spread_diameter" in history:
-        rows = trusted_rows(history, stopped_because)
-        t500 = first_crossing(rows["time"].values, rows["spread_diameter"].values, T500_DIAMETER)
     arrived = trusted_to_the_end(stopped_because)
     return {
         "t500": t500,
         "final_spread": _last(history, "spread_diameter") if arrived else None,
         "final_slump": _last(history, "slump") if arrived else None,
         "final_height": _last(history, "height") if arrived else None,
+        "final_spread_rate": spread_rate if arrived else None,
+        "at_rest_since": at_rest_since if arrived else None,
         "simulated_time": _last(history, "time"),
         "particles": particles,
         "steps": steps,
@@ -85,7 +88,25 @@ def summarise(
         "particle_steps_per_second": particle_steps / wall_time if wall_time > 0 else None,
         "stopped_because": stopped_because,
         "plugins": plugins,
+        "units": UNITS,
     }
+
+
+def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The numbers of a summary by name, as attributes of a dataset; what never happened is not a number."""
+    return {name: math.nan if summary[name] is None else summary[name] for name in UNITS}
+
+
+def state_at_end(summary: Mapping[str, Any]) -> str | None:
+    """Whether the material still moves, in words; None where the last state is not to be trusted."""
+    if not trusted_to_the_end(summary["stopped_because"]):
+        return None
+    since, rate = summary.get("at_rest_since"), summary.get("final_spread_rate")
+    if since is not None:
+        return f"at rest since t = {since:.3g} s"
+    if rate is not None and rate > LEAST_RATE:
+        return f"still spreading, {rate * 1e3:.3g} mm/s"
+    return "still moving"
 
 
 def _last(history: xarray.Dataset, name: str) -> float | None:

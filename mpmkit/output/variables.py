@@ -23,6 +23,8 @@ class ParticleVariable:
     units: str
     long_name: str
     trailing: tuple[str, ...] = ()
+    shape: tuple[int, ...] = ()
+    """lengths of the trailing dimensions, where the space does not say them"""
 
 
 PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
@@ -31,8 +33,11 @@ PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
     "stress": ParticleVariable("Pa", "Cauchy stress, positive in tension", ("tensor_component",)),
     "pressure": ParticleVariable("Pa", "pressure, positive in compression"),
     "volume_ratio": ParticleVariable("1", "current over initial volume"),
+    "shear_rate": ParticleVariable("1/s", "shear rate √(2 D':D')"),
+    "shear_stress": ParticleVariable("Pa", "shear stress √(s:s/2) of the stress deviator"),
+    "yielded": ParticleVariable("1", "1 where the material has yielded, 0 where it has not"),
 }
-"""What ``output.particle_history`` may name."""
+"""What ``output.particle_history`` may name, beside the state variables of the laws of the case."""
 
 OUT_OF_PLANE = {("x", "z"): "y", ("r", "z"): "t"}
 """Name of axis 2 of a tensor where the grid has two axes; t is the hoop direction θ."""

@@ -13,7 +13,7 @@ from ..case import parse_case
 from ..case.model import Case
 from ..case.overrides import assign
 from ..contracts.elastoviscoplastic import ElastoviscoplasticLaw
-from ..errors import CaseError
+from ..errors import CaseError, PluginStop
 from ..registry import installed
 from ..rheology.refit import with_law
 from .symmetry import axis_of_revolution, planes_of_symmetry
@@ -80,7 +80,10 @@ def _models(case: Case, kind: Callable[[Case], Iterator[tuple[str, str, Changes]
             assign(data, path, value)
         try:
             yield Cheaper(name, why, changes, parse_case(data))
-        except CaseError:  # what the case asks for beside it does not go with it, such as an output along y
+        except (
+            CaseError,
+            PluginStop,
+        ):  # what the case asks for beside it does not go with it, such as an output along y
             continue
 
 

@@ -7,12 +7,12 @@ import time as clock
 from statistics import median
 from typing import Any
 
+from ..case.forewarnings import forewarnings
 from ..case.model import Case
-from ..case.plugins import cautions, plugins_of
-from ..errors import CaseError, GuardStop
-from ..registry.blame import blaming_plugins
-from ..running.threads import use_threads
-from ..solver.memory import expected_bytes, require_memory
+from ..case.plugins import cautions
+from ..errors import CaseError, GuardStop, PluginStop
+from ..running.threads import possible_threads, using_threads
+from ..solver.memory import checkpoint_bytes, expected_bytes, require_memory
 from ..solver.simulation import Simulation
 from .cheaper import cheaper_models
 from .expectation import expected_error
@@ -39,7 +39,8 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     Returns:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
         ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
-        each, at the start), ``memory_bytes`` (at the end), ``expected_seconds``, ``remarks`` (of the laws),
+        each, at the start), ``memory_bytes`` (at the end), ``checkpoint_bytes`` (more, while a
+        checkpoint is written), ``expected_seconds``, ``remarks`` (of the laws),
         ``warnings``, ``expected_error`` (of the spread, see ``advice``; None if not known), ``cheaper``
         (models, each with ``name``, ``why``, ``changes`` by path, ``options`` for the command line,
         ``particles``, ``steps``, ``expected_seconds`` and ``expected_error``).
@@ -49,8 +50,8 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         GuardStop: it diverges at once, or a plug-in raised an exception.
     """
     require_memory(case)
-    with blaming_plugins(plugins_of(case)):
-        cost = _cost(Simulation(case), threads)
+    threads = possible_threads(threads)
+    cost = _cost(Simulation(case), threads)
     return cost | {"expected_error": expected_error(case), "cheaper": _cheaper(case, cost, threads)}
 
 
@@ -61,8 +62,7 @@ def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict
     lines = []
     for model in cheaper_models(case):
         try:
-            with blaming_plugins(plugins_of(model.case)):
-                found = _cost(Simulation(model.case), threads)
+            found = _cost(Simulation(model.case), threads)
         except (CaseError, GuardStop):  # it cannot be run after all, and is no advice
             continue
         if found["expected_seconds"] < WORTH_A_LINE * cost["expected_seconds"]:
@@ -75,11 +75,16 @@ def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict
 
 
 def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
+    with using_threads(threads, len(simulation.particles)):
+        return _cost_of(simulation)
+
+
+def _cost_of(simulation: Simulation) -> dict[str, Any]:
     case, particles = simulation.case, len(simulation.particles)
-    use_threads(threads, particles)
     # What follows is of the scene at rest: the trial below moves it on.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
-    warnings, remarks = [*cautions(case), *simulation.warnings()], simulation.remarks()
+    warnings = [*cautions(case), *forewarnings(case), *simulation.warnings()]
+    remarks = simulation.remarks()
     if not math.isfinite(case.until / step):
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
@@ -98,6 +103,7 @@ def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
         "limited_by": limited_by,
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, at_end),
+        "checkpoint_bytes": checkpoint_bytes(case, at_end),
         "expected_seconds": steps * _mean_seconds(seconds_per_step, particles, growth),
         "remarks": remarks,
         "warnings": warnings + stopped,
@@ -141,7 +147,7 @@ def _trial(simulation: Simulation) -> tuple[float, list[str]]:
             simulation.advance()
             taken.append(clock.perf_counter() - start)
     except GuardStop as stop:
-        if not taken:
+        if not taken or isinstance(stop, PluginStop):
             raise
         return median(taken), [f"this run will be {stop}"]
     return median(taken), []

@@ -16,7 +16,7 @@ from typing import Any
 from ..case import parse_case
 from ..case.model import Case
 from ..case.resolved import resolved
-from ..errors import MpmkitError
+from ..errors import MpmkitError, PluginStop
 from ..solver.memory import expected_particles
 from ..solver.simulation import Simulation
 
@@ -47,6 +47,9 @@ def pilot(case: Case, seconds: float) -> Growth | None:
     """Run a coarse copy of a case for at most ``seconds``; None if it diverges.
 
     Where the seconds do not suffice, what was seen up to then stands for the rest.
+
+    Raises:
+        PluginStop: a plug-in is at fault.
     """
     try:
         coarse = coarser(case)
@@ -58,6 +61,8 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         while simulation.time < coarse.until and clock.perf_counter() - begin < seconds:
             simulation.advance(coarse.until - simulation.time)
         taken = clock.perf_counter() - begin
+    except PluginStop:  # it would fail in the run as well
+        raise
     except MpmkitError:
         return None
     steps = simulation.steps - start_steps

@@ -1,4 +1,7 @@
-"""Whose fault it is: what a plug-in raises, or gives back, is told in one sentence that names it."""
+"""Whose fault it is: what a plug-in raises, or gives back, is told in one sentence that names it.
+
+Every call of a plug-in happens inside ``blaming_plugins``, while a case is validated and in all that uses it.
+"""
 
 from __future__ import annotations
 
@@ -7,71 +10,95 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..contracts import Plugin
-from ..errors import GuardStop, MpmkitError, PluginFault, reason
+from ..contracts import KINDS, Plugin
+from ..errors import PluginFault, PluginStop, reason
 from .discovery import installed
 
-Used = Sequence[tuple[str, Plugin]]
-"""Plug-ins, each with its kind."""
-GUARD = "plug-in-error"
+Used = Sequence[tuple[str, Plugin | type[Plugin]]]
+"""Plug-ins, or their classes, each with its kind."""
 NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
 """Modules of the framework that run on behalf of the plug-in that called them."""
 
 
 @contextmanager
 def blaming_plugins(
-    plugins: Used, when: Callable[[], tuple[int, float]] = lambda: (0, 0.0)
+    plugins: Used = (), when: Callable[[], tuple[int, float]] | None = None
 ) -> Iterator[None]:
-    """Stop a run inside the block by a guard where one of its plug-ins raises an exception, or is at fault.
+    """Raise PluginStop where a plug-in raises an exception inside the block, or is at fault.
+
+    Whatever a plug-in's own code raises is its fault: a ``SystemExit`` and an error class of the framework as
+    well, since neither is a plug-in's to raise. An interrupt is nobody's fault.
 
     Args:
-        plugins: those that may be to blame, each with its kind.
-        when: gives the step and the time, s, that the run has come to.
+        plugins: those that are used; they tell whose the plain functions of a plug-in's module are.
+        when: gives the step and the time, s, that a run has come to; None outside of a run.
 
     Raises:
-        GuardStop: says which plug-in raised what, and where; the exception itself is its cause.
+        PluginStop: says which plug-in raised what, and where; the exception itself is its cause.
     """
     try:
         yield
-    except MpmkitError:
+    except (KeyboardInterrupt, PluginStop):
         raise
     except PluginFault as fault:
-        step, time = when()
-        sentence = (
-            f"stopped at step {step}, t = {time:.6g} s: the plug-in {_named(fault.plugin, plugins)} {fault}"
-        )
-        raise GuardStop(GUARD, sentence, step=step, particle=fault.particle) from fault
-    except Exception as error:
+        plugin = fault.plugin
+        if plugin is None:
+            culprit = _culprit(fault, plugins, called=True)
+            if culprit is None:  # a program that uses the framework called it, and no plug-in did
+                raise TypeError(str(fault)) from fault
+            plugin = culprit[0]
+        raise _stop(f"{named(plugin)} {fault}", when, fault.particle) from fault
+    except BaseException as error:
         culprit = _culprit(error, plugins)
-        if culprit is None:  # a fault of the framework: it is not to be mistaken for a stranger's
+        if culprit is None:  # a fault of the framework, or of the user: not to be mistaken for a stranger's
             raise
-        (step, time), (plugin, where) = when(), culprit
-        what = f"the plug-in {plugin} raised {reason(error)} ({where})"
-        raise GuardStop(GUARD, f"stopped at step {step}, t = {time:.6g} s: {what}", step=step) from error
+        plugin, where = culprit
+        raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", when) from error
 
 
-def _culprit(error: Exception, plugins: Used) -> tuple[str, str] | None:
-    """The plug-in whose code was nearest to where the exception was raised, and the place in it."""
+def named(plugin: object) -> str:
+    """A plug-in, or its class, as sentences have it."""
+    cls = plugin if isinstance(plugin, type) else type(plugin)
+    kind = next((kind for kind, (_, contract) in KINDS.items() if issubclass(cls, contract)), None)
+    name = getattr(cls, "name", cls.__name__)
+    if kind is None:
+        return f"the plug-in '{name}'"
+    origin = installed().plugins[kind].get(name)
+    of = f", of {origin.distribution}" if origin is not None and origin.plugin is cls else ""
+    return f"the plug-in '{name}' ({kind.replace('_', ' ')}{of})"
+
+
+def _stop(what: str, when: Callable[[], tuple[int, float]] | None, particle: int | None = None) -> PluginStop:
+    if when is None:
+        return PluginStop(what, particle=particle)
+    step, time = when()
+    return PluginStop(f"stopped at step {step}, t = {time:.6g} s: {what}", step=step, particle=particle)
+
+
+def _said(error: BaseException) -> str:
+    """The kind of an exception and what it says, also of the framework's own kinds."""
+    said, kind = reason(error), type(error).__name__
+    return said if said.startswith(kind) else f"{kind}: {said}"
+
+
+def _culprit(
+    error: BaseException, plugins: Used, called: bool = False
+) -> tuple[Plugin | type[Plugin], str] | None:
+    """The plug-in whose code was nearest to where an exception was raised, and the place in it.
+
+    None where code of the framework was nearer, unless it is known to have been ``called`` wrongly.
+    """
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         module = str(frame.f_globals.get("__name__"))
-        owner = type(frame.f_locals.get("self"))
-        for kind, plugin in plugins:
-            if owner is type(plugin) or module == type(plugin).__module__:
-                return _described(kind, plugin), f"{Path(frame.f_code.co_filename).name}, line {line}"
-        if module.startswith("mpmkit.") and not module.startswith(NEUTRAL):
+        if module.partition(".")[0] in ("pydantic", "pydantic_core"):  # says what is wrong with values
+            continue
+        place = f"{Path(frame.f_code.co_filename).name}, line {line}"
+        owner = frame.f_locals.get("self", frame.f_locals.get("cls"))
+        if isinstance(owner, Plugin) or (isinstance(owner, type) and issubclass(owner, Plugin)):
+            return owner, place
+        for _, plugin in plugins:
+            if module == (plugin if isinstance(plugin, type) else type(plugin)).__module__:
+                return plugin, place
+        if module.startswith("mpmkit.") and not module.startswith(NEUTRAL) and not called:
             return None
     return None
-
-
-def _named(plugin: object, plugins: Used) -> str:
-    """The plug-in as sentences have it."""
-    for kind, used in plugins:
-        if type(used) is type(plugin):
-            return _described(kind, used)
-    return type(plugin).__name__
-
-
-def _described(kind: str, plugin: Plugin) -> str:
-    origin = installed().plugins[kind].get(plugin.name)
-    of = f", of {origin.distribution}" if origin is not None and origin.plugin is type(plugin) else ""
-    return f"'{plugin.name}' ({kind.replace('_', ' ')}{of})"

@@ -13,6 +13,7 @@ from types import ModuleType
 import pluggy
 
 from ..contracts import KINDS, Plugin, hooks
+from ..errors import reason
 from .registered import Problem, Registered, Registry
 from .requirements import check
 
@@ -34,10 +35,9 @@ def discover() -> Registry:
         try:
             for one in _load(entry_point):
                 (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
-        except (
-            Exception,
-            SystemExit,
-        ) as error:  # whatever a stranger's module does must stay its own problem
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # whatever a stranger's module does must stay its own problem
             problems.append(Problem(distribution, name, _reason(error)))
     there = {_normal(_origin(entry_point)[0]) for entry_point in entry_points(group=hooks.PROJECT)}
     for name in sorted((chosen or set()) - there - {_normal(hooks.PROJECT)}):
@@ -74,8 +74,8 @@ def _origin(entry_point: EntryPoint) -> tuple[str, str]:
 
 
 def _reason(error: BaseException) -> str:
-    text = " ".join(str(error).split())  # in one line: it becomes part of a sentence
-    return text if type(error) in (TypeError, ValueError) else f"{type(error).__name__}: {text}"
+    said = reason(error)
+    return said.removeprefix(f"{type(error).__name__}: ") if type(error) in (TypeError, ValueError) else said
 
 
 def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
@@ -86,7 +86,9 @@ def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
         try:
             check(plugin, kind)
             loaded.append(Registered(kind, plugin, distribution, version, entry_name))
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
             name = getattr(plugin, "name", None)
             known = name if isinstance(name, str) else None
             loaded.append(Problem(distribution, entry_name, _reason(error), kind, known))

@@ -45,7 +45,9 @@ class Problem:
 
     def concerns(self, kind: str, name: str) -> bool:
         """Whether a case that asks for this plug-in may mean this one."""
-        if (self.kind, self.name) == (kind, name):
+        if self.kind is not None and self.kind != kind:
+            return False
+        if self.name == name:
             return True
         return name in re.split(r"[.:_]", self.entry_point) or name.replace("-", "_") in self.entry_point
 
@@ -60,6 +62,7 @@ class Registry:
     def __init__(self, found: list[Registered], problems: list[Problem]) -> None:
         self.plugins: dict[str, dict[str, Registered]] = {kind: {} for kind in KINDS}
         self.problems = list(problems)
+        self._clashes: dict[tuple[str, str], str] = {}
         for one in found:
             rivals = [other for other in found if (other.kind, other.name) == (one.kind, one.name)]
             if len(rivals) == 1:
@@ -68,6 +71,22 @@ class Registry:
                 origins = " and ".join(f"'{r.entry_point}' of '{r.distribution}'" for r in rivals)
                 reason = f"{one.kind} '{one.name}' is registered by {origins}; uninstall all but one of them"
                 self.problems.append(Problem(one.distribution, one.entry_point, reason, one.kind, one.name))
+                self._clashes[one.kind, one.name] = reason
+
+    def unusable(self, kind: str) -> list[str]:
+        """Names of the plug-ins of one kind that are there but cannot be used, in alphabetical order."""
+        return sorted({problem.name for problem in self.problems if problem.kind == kind and problem.name})
+
+    def why_not(self, kind: str, name: str) -> list[str]:
+        """Sentences on the problems by which a plug-in may be missing; of a clash there is one for all."""
+        clash = self._clashes.get((kind, name))
+        if clash is not None:
+            return [clash]
+        return [str(problem) for problem in self.problems if problem.concerns(kind, name)]
+
+    def all(self) -> list[tuple[str, type[Plugin]]]:
+        """Kind and class of every usable plug-in."""
+        return [(kind, one.plugin) for kind, found in self.plugins.items() for one in found.values()]
 
     def of_kind(self, kind: str) -> dict[str, type[Plugin]]:
         """Names and classes of one kind, in alphabetical order."""

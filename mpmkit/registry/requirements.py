@@ -5,7 +5,15 @@ from __future__ import annotations
 import inspect
 import re
 
-from ..contracts import API_VERSION, KINDS, Plugin, ShapeFunction
+from ..contracts import (
+    API_VERSION,
+    KINDS,
+    OLDEST_API_VERSION,
+    ConstitutiveLaw,
+    Plugin,
+    ShapeFunction,
+    StateVariable,
+)
 from ..contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
@@ -18,11 +26,7 @@ def check(plugin: type[Plugin], kind: str) -> None:
     contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
-    version = getattr(plugin, "api_version", None)
-    if version is None:
-        raise TypeError(f"{plugin.__name__} has no 'api_version'; this is version {API_VERSION}")
-    if version != API_VERSION:
-        raise ValueError(f"it is written for API version {version}, this is version {API_VERSION}")
+    _check_version(plugin)
     for attribute in ("name", "citation"):
         if not isinstance(getattr(plugin, attribute, None), str):
             raise TypeError(f"{plugin.__name__} has no '{attribute}'")
@@ -32,7 +36,7 @@ def check(plugin: type[Plugin], kind: str) -> None:
         )
     if issubclass(plugin, ShapeFunction):
         support = getattr(plugin, "support", None)
-        if support not in range(2, MOST_NODES + 1):
+        if not isinstance(support, int) or support not in range(2, MOST_NODES + 1):
             raise ValueError(f"its support is {support}; it must be 2 to {MOST_NODES} nodes along an axis")
     if inspect.isabstract(plugin):
         missing = ", ".join(sorted(plugin.__abstractmethods__))
@@ -41,4 +45,42 @@ def check(plugin: type[Plugin], kind: str) -> None:
         raise ValueError(
             f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
         )
+    if issubclass(plugin, ConstitutiveLaw):
+        _check_state(plugin)
     plugin.model_json_schema()  # a parameter that has none would break the schema of all
+
+
+def _check_version(plugin: type[Plugin]) -> None:
+    version = getattr(plugin, "api_version", None)
+    if version is None:
+        raise TypeError(
+            f"{plugin.__name__} has no 'api_version'; for this mpmkit write api_version = {API_VERSION}"
+        )
+    if type(version) is not int:
+        what = "text" if isinstance(version, str) else f"of type {type(version).__name__}"
+        raise TypeError(
+            f"its api_version is {version!r}, which is {what}; "
+            f"it must be a whole number, such as {API_VERSION}"
+        )
+    if OLDEST_API_VERSION <= version <= API_VERSION:
+        return
+    supported = f"this mpmkit supports versions {OLDEST_API_VERSION} to {API_VERSION}"
+    hint = "update mpmkit" if version > API_VERSION else "what has changed: docs/plugins.md#versions"
+    raise ValueError(f"it is written for version {version} of the plug-in contracts; {supported}; {hint}")
+
+
+def _check_state(law: type[ConstitutiveLaw]) -> None:
+    for name, variable in law.state.items():
+        if not isinstance(variable, StateVariable):
+            raise TypeError(f"its state '{name}' is {variable!r}; it must be a StateVariable")
+        if not isinstance(variable.initial, str):
+            try:
+                variable.at_start()
+            except ValueError as error:
+                raise ValueError(f"its state '{name}' {error}") from None
+        elif variable.initial not in law.model_fields and not hasattr(law, variable.initial):
+            parameters = ", ".join(law.model_fields) or "none"
+            raise ValueError(
+                f"its state '{name}' starts from '{variable.initial}', which is no parameter of the law; "
+                f"its parameters: {parameters}"
+            )

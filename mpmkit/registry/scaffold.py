@@ -17,7 +17,14 @@ from ..output.atomic import cannot_write
 from ..version import __version__
 from . import installed
 
-KINDS = {"law": "constitutive law", "shape": "shape function", "order": "update order"}
+KINDS = {
+    "law": "constitutive law",
+    "shape": "shape function",
+    "order": "update order",
+    "velocity": "velocity update",
+    "volumetric": "volumetric treatment",
+    "equation_of_state": "equation of state",
+}
 """Kinds of plug-ins that there are templates for, and what they are called."""
 PREFIX = "mpmkit-"
 NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
@@ -71,6 +78,9 @@ def _refuse_taken(kind: str, plugin: str, module: str) -> None:
         raise CaseError(
             f"there is a {KINDS[kind]} '{plugin}' already, of {taken.distribution}; choose another name"
         )
+    if plugin in installed().unusable(kind):
+        reasons = "; ".join(installed().why_not(kind, plugin))
+        raise CaseError(f"there is a {KINDS[kind]} '{plugin}' already: {reasons}; choose another name")
     if importlib.util.find_spec(module) is not None:
         raise CaseError(
             f"there is a module {module} already in this environment; choose another name than '{plugin}'"

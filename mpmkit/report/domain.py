@@ -6,10 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..spaces import SPACES
 from .run_results import RunResults
 
-COLUMN = {"x": 0, "r": 0, "y": 1, "z": 2}
-"""Where the coordinate along an axis stands in the positions of a frame."""
+
+def columns(results: RunResults) -> dict[str, int]:
+    """Where the coordinate along each axis of the scene stands in the positions of a frame."""
+    return {axis: column for column, axis in enumerate(SPACES[results.case["space"]].axes)}
 
 
 @dataclass(frozen=True)
@@ -62,8 +65,8 @@ def symmetry_plane(results: RunResults, axis: str) -> float | None:
 
 def inside(results: RunResults, position: np.ndarray) -> np.ndarray:
     """Which of the positions ``(n, 3)`` are finite and in the domain, give or take a cell."""
-    grid, kept = results.case["grid"], np.isfinite(position).all(axis=1)
+    grid, kept, column = results.case["grid"], np.isfinite(position).all(axis=1), columns(results)
     for axis, (low, high) in grid["domain"].items():
-        along = position[:, COLUMN[axis]]
+        along = position[:, column[axis]]
         kept &= (along >= low - grid["cell_size"]) & (along <= high + grid["cell_size"])
     return kept

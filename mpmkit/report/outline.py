@@ -17,7 +17,7 @@ from .filling import triangles_between
 from .images import beyond_faces
 from .panels import Panels
 from .run_results import RunResults
-from .section import Section, plane_of, section_of
+from .section import Section, lengths_of, plane_of, section_of
 from .style import BLACK, COLOUR_MAP, GREY, MILLIMETRES
 
 DEFAULT_TIMES = (0.0, 0.1, 0.2, 0.5)
@@ -31,6 +31,8 @@ class Snapshot:
 
     time: float
     section: Section
+    lengths: dict[str, float]
+    """spread and height, m, as far as they are known"""
 
 
 def draw(results: RunResults) -> Figure | None:
@@ -39,7 +41,8 @@ def draw(results: RunResults) -> Figure | None:
         return None
     domain, plane = domain_of(results), plane_of(results)
     snapshots = [
-        Snapshot(time, section_of(path, results, plane, domain)) for time, path in chosen_frames(results)
+        Snapshot(time, section_of(path, results, plane, domain), lengths_of(path, results))
+        for time, path in chosen_frames(results)
     ]
     shown = [snapshot.section for snapshot in snapshots if len(snapshot.section)]
     if not shown:
@@ -54,7 +57,7 @@ def draw(results: RunResults) -> Figure | None:
             axes.axhline(domain.floor * MILLIMETRES, color=BLACK, linewidth=1.5)
         axes.set_xlim(lower[0] * MILLIMETRES, upper[0] * MILLIMETRES)
         axes.set_ylim(lower[1] * MILLIMETRES, upper[1] * MILLIMETRES)
-        axes.set_title(_label(results, snapshot.time, digits), loc="left", fontsize=9.5, fontweight="normal")
+        axes.set_title(_label(results, snapshot, digits), loc="left", fontsize=9.5, fontweight="normal")
         if not len(snapshot.section):
             note = "nothing in this section"
             axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", color=GREY)
@@ -132,10 +135,9 @@ def _digits(times: list[float]) -> int:
     return MOST_DIGITS
 
 
-def _label(results: RunResults, time: float, digits: int) -> str:
-    when = f"t = {time:.{digits}f} s"
-    if results.stopped_by_guard and time == results.frames[-1][0]:
+def _label(results: RunResults, snapshot: Snapshot, digits: int) -> str:
+    when = f"t = {snapshot.time:.{digits}f} s"
+    if results.stopped_by_guard and snapshot.time == results.frames[-1][0]:
         return f"{when}\nstopped by a guard"
-    lengths = {"spread": results.at(time, "spread_diameter"), "height": results.at(time, "height")}
-    known = [f"{word} {value * MILLIMETRES:.0f} mm" for word, value in lengths.items() if value is not None]
+    known = [f"{word} {value * MILLIMETRES:.0f} mm" for word, value in snapshot.lengths.items()]
     return f"{when}\n{', '.join(known)}".rstrip()

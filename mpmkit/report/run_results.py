@@ -49,13 +49,6 @@ class RunResults:
         finite = np.isfinite(values)
         return np.where(finite, values, np.nan) if finite.sum() > 1 else None
 
-    def at(self, time: float, name: str) -> float | None:
-        """A scalar of the history, interpolated at a time, s; None if it is absent or not known then."""
-        if name not in self.history or not len(self.time) or time > self.time[-1]:
-            return None
-        value = float(np.interp(time, self.time, self.history[name].values))
-        return value if np.isfinite(value) else None
-
 
 def read_results(path: Path) -> RunResults:
     """Read a run directory.

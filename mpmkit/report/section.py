@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ..output import read_frame
-from .domain import Domain, inside, symmetry_plane
+from ..spaces import SPACES
+from .domain import Domain, columns, inside, symmetry_plane
 from .run_results import RunResults
 
 NEEDED = ("position", "half_size", "speed", "body")
@@ -83,12 +84,34 @@ def section_of(path: Path, results: RunResults, plane: float | None, domain: Dom
         order = np.argsort(-distance)
         drawn = order[distance[order] <= results.case["grid"]["cell_size"]]
         frame = {name: field[drawn] for name, field in frame.items()}
-    centre, half_size = frame["position"][:, [0, 2]], frame["half_size"][:, [0, 2]]
+    plane_axes = [0, SPACES[results.case["space"]].dim - 1]  # the horizontal and the vertical
+    centre, half_size = frame["position"][:, plane_axes], frame["half_size"][:, plane_axes]
     section = Section(centre, half_size, frame["speed"], frame["body"])
     everything = np.ones(len(section), dtype=bool)
     if domain.mirror is not None:
         section = section.with_image(everything, np.array([-1, 1]), np.array([2 * domain.mirror, 0]))
     return section
+
+
+def lengths_of(path: Path, results: RunResults) -> dict[str, float]:
+    """Spread diameter and height, m, of the material in a frame; what the scene does not have is left out.
+
+    They are those of the history (``solver.measures``), which need not have a row at this time.
+    """
+    frame = _drawable(path, results)
+    if not len(frame["position"]):
+        return {}
+    low, high = frame["position"] - frame["half_size"], frame["position"] + frame["half_size"]
+    (*horizontal, vertical), column = SPACES[results.case["space"]].axes, columns(results)
+    grid, diameters = results.case["grid"], []
+    for axis in horizontal:
+        if grid.get("faces", {}).get(f"{axis}_min") == "periodic":
+            continue
+        lowest, highest = float(low[:, column[axis]].min()), float(high[:, column[axis]].max())
+        plane = 0.0 if axis == "r" else symmetry_plane(results, axis)
+        diameters.append(highest - lowest if plane is None else 2 * max(highest - plane, plane - lowest))
+    found = {} if not diameters else {"spread": float(np.mean(diameters))}
+    return found | {"height": float(high[:, column[vertical]].max()) - grid["domain"][vertical][0]}
 
 
 def _drawable(path: Path, results: RunResults) -> dict[str, np.ndarray]:

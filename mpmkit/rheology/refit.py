@@ -8,6 +8,8 @@ import numpy as np
 
 from ..contracts import ElastoviscoplasticLaw, GeneralisedNewtonianLaw, Plugin
 from ..registry import Registry
+from ..registry.audit import require_array, require_number
+from ..registry.blame import blaming_plugins
 
 RATES = np.geomspace(0.1, 10.0, 41)
 """Shear rates, 1/s, over which the curves are to agree: those of a slump, and of rheometers for concrete."""
@@ -26,19 +28,31 @@ def with_law(material: dict[str, Any], name: str, registry: Registry) -> tuple[d
         material: of a case file, its law named and its parameters given.
         name: of the new law.
         registry: where both are found.
+
+    Raises:
+        PluginStop: one of the two laws is at fault.
     """
     laws = registry.of_kind("law")
     old, new = laws.get(material.get("law", "")), laws.get(name)
     if old is None or new is None or old is new:
         return material | {"law": name}, []
+    with blaming_plugins([("law", old), ("law", new)]):
+        return _refitted(material, old, new)
+
+
+def _refitted(
+    material: dict[str, Any], old: type[Plugin], new: type[Plugin]
+) -> tuple[dict[str, Any], list[str]]:
+    name = new.name
     own = set(old.model_fields) - set(new.model_fields)
     kept = {key: value for key, value in material.items() if key not in own} | {"law": name}
     missing = [key for key, field in new.model_fields.items() if field.is_required() and key not in kept]
     shared = {key: kept[key] for key in new.model_fields if key in kept}
     try:
-        target = flow_curve(old.model_validate({k: material[k] for k in old.model_fields if k in material}))
+        before = old.model_validate({k: material[k] for k in old.model_fields if k in material})
     except ValueError:  # the case will be refused, in words of its own
         return kept, []
+    target = flow_curve(before)
     if not missing or target is None or not issubclass(new, FLUIDS):
         return kept, []
     fitted = _fit(new, shared, missing, target)
@@ -52,9 +66,15 @@ def with_law(material: dict[str, Any], name: str, registry: Registry) -> tuple[d
 def flow_curve(law: Any) -> np.ndarray | None:
     """Stress, Pa, in simple shear at ``RATES``; None of a law that is no fluid of the short contracts."""
     if isinstance(law, GeneralisedNewtonianLaw):
-        return law.apparent_viscosity(RATES) * RATES
+        viscosity = law.apparent_viscosity(RATES.copy())
+        require_array(law, "apparent_viscosity", viscosity, RATES.shape)
+        return viscosity * RATES
     if isinstance(law, ElastoviscoplasticLaw):
-        return law.flow_curve(RATES)
+        stress = law.flow_curve(RATES.copy())
+        if np.ndim(stress) == 0:  # a constant will do
+            return np.full(RATES.shape, require_number(law, "flow_curve", stress))
+        require_array(law, "flow_curve", stress, RATES.shape)
+        return stress
     return None
 
 

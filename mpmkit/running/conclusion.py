@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import logging
+from typing import Any
 
 from ..errors import reason
 from ..output import summarise, write_json
+from ..output.log import RECORD
+from ..output.summary import UNITS, numbers, state_at_end, trusted_to_the_end
 from ..solver.simulation import Simulation
 from .provenance import plugins_used
 from .recorder import Recorder
@@ -21,9 +24,11 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     Raises:
         OutputError: where it cannot be written.
     """
-    recorder.history.attributes["stopped_because"] = ended
-    recorder.finish()
-    _summarise(recorder, ended, wall_time)
+    recorder.add_last_row()
+    recorder.add_last_frame()
+    summary = _summary(recorder, ended, wall_time)
+    recorder.write()
+    _write_summary(recorder, summary)
     _warn_of_fracture(recorder.simulation)
 
 
@@ -33,25 +38,32 @@ def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
     Part by part: a plug-in that fails may fail again when its energies are asked for, and a summary may fit
     on a disk that has no room for the history.
     """
-    recorder.history.attributes["stopped_because"] = ended
-    for part in (recorder.add_last_row, recorder.add_last_frame, recorder.write):
+    summary: dict[str, Any] = {}
+    for part in (
+        recorder.add_last_row,
+        recorder.add_last_frame,
+        lambda: summary.update(_summary(recorder, ended, wall_time)),
+        recorder.write,
+        lambda: _write_summary(recorder, summary),
+    ):
         try:
             part()
         except Exception as error:
             LOGGER.warning("at the end of the run: %s", reason(error))
-    try:
-        _summarise(recorder, ended, wall_time)
-    except Exception as error:
-        LOGGER.warning("at the end of the run: %s", reason(error))
 
 
-def _summarise(recorder: Recorder, ended: str, wall_time: float) -> None:
-    simulation, directory = recorder.simulation, recorder.directory
-    LOGGER.info("%s after %d steps, t = %.6g s", ended, simulation.steps, simulation.time)
-    if directory is None:
-        return
+def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]:
+    """The summary of a run; its numbers become attributes of the history."""
+    simulation, milestones, attributes = recorder.simulation, recorder.milestones, recorder.history.attributes
+    attributes["stopped_because"] = ended
+    trusted = trusted_to_the_end(ended)
+    if trusted:
+        milestones.finish()
     summary = summarise(
         recorder.history.dataset(),
+        t500=milestones.t500(trusted),
+        at_rest_since=milestones.at_rest_since,
+        spread_rate=milestones.spreading,
         particles=len(simulation.particles),
         particle_steps=simulation.particle_steps,
         steps=simulation.steps,
@@ -59,7 +71,24 @@ def _summarise(recorder: Recorder, ended: str, wall_time: float) -> None:
         stopped_because=ended,
         plugins=plugins_used(simulation.case),
     )
-    write_json(directory.summary, summary)
+    attributes |= numbers(summary)
+    state = state_at_end(summary)
+    LOGGER.info(
+        "%s after %d steps, t = %.6g s%s",
+        ended, simulation.steps, simulation.time, "" if state is None else f"; {state}",
+    )  # fmt: skip
+    found = [
+        f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
+        for name, unit in UNITS.items()
+        if summary[name] is not None
+    ]
+    RECORD.info("results: %s", ", ".join(found))
+    return summary
+
+
+def _write_summary(recorder: Recorder, summary: dict[str, Any]) -> None:
+    if recorder.directory is not None and summary:
+        write_json(recorder.directory.summary, summary)
 
 
 def _warn_of_fracture(simulation: Simulation) -> None:

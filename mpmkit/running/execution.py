@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import logging
+import shlex
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..case.forewarnings import forewarnings
 from ..case.plugins import cautions, plugins_of
-from ..errors import GuardStop, Interrupted, MpmkitError, OutputError, reason
+from ..errors import GuardStop, Interrupted, OutputError, reason
+from ..output.checkpoints import Checkpoints
 from ..registry.blame import blaming_plugins
 from ..solver.simulation import Simulation
 from .conclusion import conclude, salvage
 from .interrupts import held_interrupts
 from .recorder import Recorder
 from .saver import Saver
+from .setting import setting
 from .stopwatch import Stopwatch
 
 LOGGER = logging.getLogger("mpmkit")
@@ -44,30 +48,39 @@ class _HeldInterrupt(KeyboardInterrupt):
 
 def execute(
     recorder: Recorder, watch: Stopwatch, threads: int, listen: Listener | None, saver: Saver | None
-) -> None:
+) -> bool:
     """Advance the simulation of a recorder to its end, and write how it ended.
+
+    Returns:
+        Whether an interrupt came too late to stop the run, so that what is left to do should not take long.
 
     Raises:
         GuardStop: it diverged, or a plug-in raised an exception.
         OutputError: something could not be written.
-        Interrupted: on Ctrl-C or SIGTERM; a checkpoint is written if the state is whole.
+        Interrupted: on Ctrl-C or SIGTERM and the like; a checkpoint is written if the state is whole.
     """
     simulation = recorder.simulation
     try:
         with blaming_plugins(plugins_of(simulation.case), lambda: (simulation.steps, simulation.time)):
             _announce(simulation, threads)
-            _advance(recorder, watch, listen, saver)
-        conclude(recorder, "finished", watch.elapsed)
-        if saver is not None:
-            saver.remove()
+            _first_step(recorder, saver)
+        watch.start()
+        with held_interrupts() as interrupted:
+            with blaming_plugins(plugins_of(simulation.case), lambda: (simulation.steps, simulation.time)):
+                _advance(recorder, watch, listen, saver, interrupted)
+            conclude(recorder, "finished", watch.elapsed)
+            if saver is not None:
+                saver.keep_last()
+            return interrupted()
     except GuardStop as stop:
         LOGGER.error("%s", stop, exc_info=stop.__cause__)
         salvage(recorder, stop.guard, watch.elapsed)
         raise
     except KeyboardInterrupt as stop:
-        saved = isinstance(stop, _HeldInterrupt) and _save_at_last(saver)
+        if isinstance(stop, _HeldInterrupt) and saver is not None:
+            saver.save_if_possible()
         salvage(recorder, "interrupted", watch.elapsed)
-        raise Interrupted(_interrupted(recorder, saved)) from None
+        raise Interrupted(_interrupted(recorder)) from None
     except OutputError as error:
         LOGGER.error("%s", error)
         salvage(recorder, "output-error", watch.elapsed)
@@ -78,24 +91,13 @@ def execute(
         raise
 
 
-def _save_at_last(saver: Saver | None) -> bool:
-    """Write a checkpoint if there is somewhere to; whether it was written."""
-    if saver is None:
-        return False
-    try:
-        saver.save()
-    except MpmkitError as error:
-        LOGGER.warning("no checkpoint: %s", error)
-        return False
-    return True
-
-
-def _interrupted(recorder: Recorder, saved: bool) -> str:
+def _interrupted(recorder: Recorder) -> str:
     at = f"interrupted at t = {recorder.simulation.time:.6g} s"
     if recorder.directory is None:
         return at
     path = recorder.directory.path
-    more = f"; go on with: mpmkit run --resume {path}" if saved else ""
+    can_go_on = Checkpoints(recorder.directory.checkpoints).paths()
+    more = f"; go on with: mpmkit run --resume {shlex.quote(str(path))}" if can_go_on else ""
     return f"{at}; the results up to then are in '{path}'{more}"
 
 
@@ -110,43 +112,71 @@ def _announce(simulation: Simulation, threads: int) -> None:
     )  # fmt: skip
     if simulation.steps > 0:
         LOGGER.info("goes on after step %d, t = %.6g s", simulation.steps, simulation.time)
-    for sentence in simulation.remarks():
+    for sentence in [*setting(simulation.case), *simulation.remarks()]:
         LOGGER.info("%s", sentence)
-    for sentence in [*cautions(simulation.case), *simulation.warnings()]:
+    case = simulation.case
+    for sentence in [*cautions(case), *forewarnings(case), *simulation.warnings()]:
         LOGGER.warning("%s", sentence)
 
 
-def _advance(recorder: Recorder, watch: Stopwatch, listen: Listener | None, saver: Saver | None) -> None:
+def _first_step(recorder: Recorder, saver: Saver | None) -> None:
+    """It loads or compiles the kernels, and is no part of the wall time; an interrupt ends it at once."""
+    recorder.record()
+    _step(recorder, saver)
+
+
+def _advance(
+    recorder: Recorder,
+    watch: Stopwatch,
+    listen: Listener | None,
+    saver: Saver | None,
+    interrupted: Callable[[], bool],
+) -> None:
     simulation = recorder.simulation
-    until = simulation.case.until
-    recorder.record()
-    simulation.advance(until - simulation.time)  # loads or compiles the kernels: the clock starts behind it
-    watch.start()
     told = clock.monotonic()
-    recorder.record()
     warned = False
-    with held_interrupts() as interrupted:
-        while until - simulation.time > 1e-9 * until:
-            simulation.advance(until - simulation.time)
-            recorder.record()
-            if interrupted():
-                raise _HeldInterrupt
-            if saver is not None:
-                saver.save_if_due()
-            if simulation.mach_number > COMPRESSIBLE and not warned:
-                warned = True
-                LOGGER.warning(
-                    "the Mach number is %.3g at t = %.4g s: the material flows as if it were compressible; "
-                    "a larger sound_speed makes it less so",
-                    simulation.mach_number, simulation.time,
-                )  # fmt: skip
-            now = clock.monotonic()
-            if listen is not None and now - told > TOLD_EVERY:
-                told = now
-                listen(_progress(simulation, watch.elapsed))
+    while not _over(simulation):
+        if interrupted():
+            raise _HeldInterrupt
+        if saver is not None:
+            saver.save_if_due()
+        _step(recorder, saver)
+        if simulation.mach_number > COMPRESSIBLE and not warned:
+            warned = True
+            LOGGER.warning(
+                "the Mach number is %.3g at t = %.4g s: the material flows as if it were compressible; "
+                "a larger sound_speed makes it less so",
+                simulation.mach_number, simulation.time,
+            )  # fmt: skip
+        now = clock.monotonic()
+        if listen is not None and now - told > TOLD_EVERY:
+            told = now
+            listen(_progress(simulation, watch.elapsed))
     simulation.check()
     if listen is not None:
         listen(_progress(simulation, watch.elapsed))
+
+
+def _over(simulation: Simulation) -> bool:
+    until = simulation.case.until
+    return not until - simulation.time > 1e-9 * until
+
+
+def _step(recorder: Recorder, saver: Saver | None) -> None:
+    """One step and its records, and the last checkpoint, from which the run can go on beyond its end.
+
+    The last step is cut short to end with the run. A longer run does not cut it, and goes on from before it.
+    """
+    simulation = recorder.simulation
+    simulation.prepare()
+    left = simulation.case.until - simulation.time
+    cut = simulation.time_step > left
+    if cut and saver is not None and simulation.steps > 0:
+        saver.save_if_possible()
+    simulation.advance(left)
+    recorder.record()
+    if not cut and saver is not None and _over(simulation):
+        saver.save_if_possible()
 
 
 def _progress(simulation: Simulation, elapsed: float) -> Progress:

@@ -1,4 +1,4 @@
-"""Ctrl-C and the like, held back until a step is done."""
+"""Ctrl-C, and the signals by which batch systems end a run, held back until a step is done."""
 
 from __future__ import annotations
 
@@ -8,7 +8,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+OF_BATCH_SYSTEMS = tuple(
+    getattr(signal, name)
+    for name in ("SIGTERM", "SIGHUP", "SIGXCPU", "SIGUSR1", "SIGUSR2")
+    if hasattr(signal, name)  # Windows has the first alone
+)
+"""What a process gets whose time is up, whose terminal is gone, or that is warned of its end."""
+SIGNALS = (signal.SIGINT, *OF_BATCH_SYSTEMS)
+
+
+def take_signals_as_interrupts() -> None:
+    """Let the signals of batch systems do what Ctrl-C does; what is ignored, as by nohup, stays ignored."""
+    for number in OF_BATCH_SYSTEMS:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
 
 
 @contextmanager

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import platform
+import shlex
+import sys
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -43,3 +46,21 @@ def attributes(case: Case, threads: int) -> dict[str, str]:
         "plugins": json.dumps(plugins_used(case)),
         "machine": json.dumps(machine),
     }
+
+
+def log_lines(case: Case, threads: int) -> list[str]:
+    """What a log says at its beginning: the command, the versions, the plug-ins and the machine."""
+    said = attributes(case, threads)
+    versions = [f"{name} {version}" for name, version in json.loads(said["versions"]).items()]
+    plugins = [
+        f"{p['kind']} {p['name']} ({p.get('distribution', 'not installed')} {p.get('version', '')})"
+        for p in json.loads(said["plugins"])
+    ]
+    machine = [f"{name} {value}" for name, value in json.loads(said["machine"]).items()]
+    program, *arguments = sys.argv or ["python"]
+    return [
+        f"command: {shlex.join([Path(program).name, *arguments])}",
+        f"versions: {', '.join(versions)}",
+        f"plug-ins: {', '.join(plugins)}",
+        f"machine: {', '.join(machine)}",
+    ]

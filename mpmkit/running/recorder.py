@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 
 from ..case.output import FRAMES, ROWS
-from ..output import FrameWriter, History, RunDirectory, Variable
-from ..solver.measures import PARTICLE_FIELDS, frame_fields
+from ..case.state_variables import state_variables
+from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory, Variable
+from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
+from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .milestones import Milestones
 from .schedule import Schedule
 
 COLUMNS = (
@@ -40,55 +43,57 @@ class Recorder:
     def __init__(
         self,
         simulation: Simulation,
-        attributes: dict[str, str],
+        attributes: dict[str, Any],
         directory: RunDirectory | None,
-        frames: dict[str, float] | None = None,
+        goes_on: bool = False,
     ) -> None:
         """
         Args:
             simulation: what is recorded.
             attributes: global attributes of the history.
             directory: where the history and the frames are written; nothing is without one.
-            frames: of a run that goes on, the times of those that are there, by file.
+            goes_on: whether ``restore`` is called next, so that the frames that are there stay until then.
         """
         case = simulation.case
         settings, until = case.output, case.until
         self.simulation = simulation
         self.directory = directory
-        self.history = History(COLUMNS, attributes, case.space_.axes)
-        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, frames)
+        variables = PARTICLE_VARIABLES | state_variables(case)
+        self.history = History(COLUMNS, attributes, case.space_.axes, variables)
+        self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
+        self.milestones = Milestones(simulation)
         self._last_row = self._last_frame = -1  # steps
 
     def record(self) -> None:
-        """Add a row, and a frame, where one is due."""
+        """Add a row, and a frame, where one is due, and look for milestones."""
+        self.milestones.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
-            self._add_row()
+            self.add_last_row()
         if self.frames is not None and self._frames_due.passed(now):
-            self._add_frame()
+            self.add_last_frame()
 
-    def state(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """What has been recorded, as arrays and as words, for a checkpoint."""
-        arrays = {f"history.{name}": rows for name, rows in self.history.state().items()}
-        frames = {} if self.frames is None else dict(self.frames.frames)
-        return arrays, {"frames": frames, "last_row": self._last_row, "last_frame": self._last_frame}
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own."""
+        found: dict[str, Stateful] = {
+            "history": self.history,
+            "milestones": self.milestones,
+            "rows_due": self._rows_due,
+            "frames_due": self._frames_due,
+        }
+        return found if self.frames is None else found | {"frames": self.frames}
 
-    def restore(self, arrays: dict[str, np.ndarray], words: dict[str, Any]) -> None:
+    def state(self) -> State:
+        """What has been recorded, and what is due."""
+        return plain_state(self) | state_of(self.components)
+
+    def restore(self, state: State) -> None:
         """Take up what had been recorded by the present step of the simulation."""
-        rows = {key.removeprefix("history."): a for key, a in arrays.items() if key.startswith("history.")}
-        self.history.restore(rows)
-        self._last_row, self._last_frame = words["last_row"], words["last_frame"]
-        now = self.simulation.time + 0.5 * self.simulation.time_step
-        self._rows_due.passed(now)
-        self._frames_due.passed(now)
-
-    def finish(self) -> None:
-        """Add the state in which the run ended, and write the history."""
-        self.add_last_row()
-        self.add_last_frame()
-        self.write()
+        restore_plain(self, state)
+        restore(self.components, state)
 
     def add_last_row(self) -> None:
         """Add a row of the present step, unless there is one."""
@@ -112,10 +117,8 @@ class Recorder:
             "mach_number": simulation.mach_number,
         }
         by_number = np.argsort(particles.number)
-        fields: dict[str, np.ndarray] = {
-            name: PARTICLE_FIELDS[name](particles, simulation.grid)[by_number]
-            for name in simulation.case.output.particle_history
-        }
+        kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
+        fields = {name: field[by_number] for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
         if self.directory is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from ..case.model import Case
 from ..errors import CaseError
 from ..output import RunDirectory
+from .case_files import portable
 from .provenance import attributes
 from .resume import differences
 
@@ -38,8 +39,15 @@ def history_of(directory: Path) -> xarray.Dataset:
 
 
 def made_differently(history: xarray.Dataset, case: Case, threads: int) -> list[str]:
-    """What is not as it was when a history was made: versions, plug-ins, machine; threads change no bit."""
-    now, found = attributes(case, threads), []
+    """What is not as it was when a history was made: the case, versions, plug-ins, machine.
+
+    Threads are left out: they change no bit.
+    """
+    edited = differences(
+        json.loads(history.attrs.get("case", "null")), json.loads(json.dumps(portable(case)))
+    )
+    found = [f"case.json was edited after the run: {sentence}" for sentence in edited]
+    now = attributes(case, threads)
     for name in TOLD:
         before = json.loads(history.attrs.get(name, "null"))
         found += differences(before, json.loads(now[name]), name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from ..output.copies import Copies
 from ..version import __version__
 from .case_files import named_files, portable
 from .provenance import plugins_used
+from .schedule import AT_THE_END
 
 
 def identity(case: Case) -> dict[str, Any]:
@@ -72,30 +74,52 @@ def case_of(directory: Path) -> Case:
     return load_case(file)
 
 
-def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Arrays and words of the last whole checkpoint of a run.
+def for_longer(case: Case, until: float | None, directory: Path) -> Case:
+    """The case of a run with a later end; None leaves it as it is.
 
     Raises:
-        CaseError: there is none, or it is of another case or of other versions; says what differs.
+        CaseError: the end is earlier, or not a number.
+    """
+    if until is None:
+        return case
+    if not case.until <= until < math.inf:
+        raise CaseError(
+            f"until is {until:g} s; the run in '{directory}' ends at {case.until:g} s, "
+            "and can only go on to a later time"
+        )
+    return load_case(RunDirectory(directory).case, [f"until={until!r}"])
+
+
+def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """The state in the last whole checkpoint of a run, and the identity of the run that goes on from it.
+
+    Raises:
+        CaseError: there is none, or it is of another case or of other versions; says what differs. A later
+            ``until`` is no other case.
     """
     files = RunDirectory(directory)
     checkpoints = Checkpoints(files.checkpoints)
-    if not checkpoints.paths() and _has_finished(files):
-        raise CaseError(f"the run in '{directory}' has finished: there is nothing to go on with")
-    arrays, words = checkpoints.newest()
+    if _has_finished(files, case.until):
+        raise CaseError(
+            f"the run in '{directory}' has finished: there is nothing to go on with; "
+            f"--until T with a T above {case.until:g} s makes it longer"
+        )
+    state, words = checkpoints.newest()
     before, now = words["identity"], identity(case)
     found = differences(before | {"case": None}, now | {"case": None})
-    found += [f"case.{sentence}" for sentence in other_case(before["case"], case)]
+    ended = before["case"] if before["case"]["until"] > case.until else before["case"] | {"until": case.until}
+    found += [f"case.{sentence}" for sentence in other_case(ended, case)]
     if found:
         more = f", and {len(found) - 1} more" if len(found) > 1 else ""
         raise CaseError(
             f"the run in '{directory}' cannot go on, since it would be another one: {found[0]}{more}"
         )
-    return arrays, words
+    return state, now
 
 
-def _has_finished(files: RunDirectory) -> bool:
+def _has_finished(files: RunDirectory, until: float) -> bool:
     try:
-        return json.loads(files.summary.read_text())["stopped_because"] == "finished"
-    except (OSError, ValueError, KeyError):
+        summary = json.loads(files.summary.read_text(encoding="utf-8"))
+        return summary["stopped_because"] == "finished" and summary["simulated_time"] > until * AT_THE_END
+    except (OSError, ValueError, KeyError, TypeError):
         return False

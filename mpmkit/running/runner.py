@@ -9,21 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
-from ..errors import CaseError, GuardStop, OutputError, reason
+from ..errors import CaseError, GuardStop, OutputError, Undrawn, reason
+from ..kernels.environment import require_threads
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
+from ..output.log import RECORD
 from ..registry.blame import blaming_plugins
 from ..solver.memory import require_memory
 from ..solver.simulation import Simulation
-from ..solver.state import restore
-from .case_files import from_copies, named_files, portable
+from ..solver.stateful import State, restore
+from .case_files import NamedFile, from_copies, named_files, portable
 from .execution import Listener, Progress, execute
-from .provenance import attributes
+from .provenance import attributes, log_lines
 from .recorder import Recorder
-from .resume import case_of, identity, last_checkpoint, other_case
-from .saver import Saver
+from .resume import case_of, for_longer, identity, last_checkpoint, other_case
+from .saver import Saver, run_components
 from .stopwatch import Stopwatch
-from .threads import use_threads
+from .threads import using_threads
 
 if TYPE_CHECKING:
     import xarray
@@ -51,31 +53,46 @@ def run(
         threads: threads to use; as many as pay off unless told.
         listen: told of the progress a few times a second.
         checkpoint_every: wall time, s, between two checkpoints in ``out``, from which ``resume`` goes on; one
-            is written on Ctrl-C in any case.
+            is written on Ctrl-C, and one before the last step, in any case.
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
-        the fields named in ``output.particle_history``.
+        the fields named in ``output.particle_history``. Its attributes hold the numbers of the summary, such
+        as ``t500``, s, and ``final_spread``, m; what never happened is not a number there.
 
     Raises:
         CaseError: the case cannot be run as it stands.
         GuardStop: the run diverged, or a plug-in raised an exception; everything up to then is in the run
             directory.
         OutputError: the run directory cannot be written, or another run is writing it.
+        MpmkitError: this process was forked from one in which there was a run before.
     """
+    require_threads()
     require_memory(case)
     files = [] if out is None else named_files(case)
     with blaming_plugins(plugins_of(case)):
         simulation = Simulation(case)
-    threads = use_threads(threads, len(simulation.particles))
-    watch = Stopwatch()
-    if out is None:
-        recorder = Recorder(simulation, attributes(case, threads), None)
-        execute(recorder, watch, threads, listen, None)
-        return recorder.history.dataset()
+    with using_threads(threads, len(simulation.particles)) as used:
+        if out is None:
+            recorder = Recorder(simulation, attributes(case, used), None)
+            execute(recorder, Stopwatch(), used, listen, None)
+        else:
+            directory = RunDirectory(Path(out), overwrite, keep={file.name for file in files})
+            recorder = _run_in(directory, case, files, simulation, used, listen, checkpoint_every)
+    return recorder.history.dataset()
+
+
+def _run_in(
+    directory: RunDirectory,
+    case: Case,
+    files: list[NamedFile],
+    simulation: Simulation,
+    threads: int,
+    listen: Listener | None,
+    checkpoint_every: float | None,
+) -> Recorder:
     # What is read is read before anything is overwritten: it may lie in that very directory.
     contents, data, itself = {file.name: file.content() for file in files}, portable(case), identity(case)
-    directory = RunDirectory(Path(out), overwrite, keep=contents)
     with directory.claimed(), open_log(directory.log):
         try:
             Copies(directory.meshes).write(contents)
@@ -86,14 +103,16 @@ def run(
         except OutputError as error:
             LOGGER.error("%s", error)
             raise
+        watch = Stopwatch()
         _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself))
-    return recorder.history.dataset()
+    return recorder
 
 
 def resume(
     directory: str | Path,
     *,
     case: Case | None = None,
+    until: float | None = None,
     threads: int | None = None,
     listen: Listener | None = None,
     checkpoint_every: float | None = None,
@@ -102,35 +121,52 @@ def resume(
 
     Args:
         directory: of the run.
-        case: what the caller takes the case to be; that of the directory unless told.
+        case: what the caller takes the case to be; default: that of the directory.
+        until: a later end, s, also of a run that has finished; default: that of the case. Rows and frames
+            keep the intervals that they had.
         threads, listen, checkpoint_every: as for ``run``.
 
     Returns:
         The history of the whole run.
 
     Raises:
-        CaseError: there is no checkpoint, or it is of another case, or of other versions of what runs it.
+        CaseError: there is no checkpoint, or it is of another case, or of other versions of what runs it, or
+            ``until`` is too early.
         GuardStop, OutputError: as of ``run``.
     """
+    require_threads()
     path = Path(directory)
-    found = case_of(path)
-    if case is not None and (apart := other_case(portable(found), case)):
-        raise CaseError(f"the case is not that of the run in '{path}': {apart[0]}")
+    before = case_of(path)
+    found = for_longer(before, until, path)
+    if case is not None:
+        same_end = case if until is None else case.model_copy(update={"until": before.until})
+        if apart := other_case(portable(before), same_end):
+            raise CaseError(f"the case is not that of the run in '{path}': {apart[0]}")
     require_memory(found)
-    with RunDirectory(path).claimed(resume=True):
-        arrays, words = last_checkpoint(path, found)
-        with open_log(RunDirectory(path).log):
+    files = RunDirectory(path)
+    with files.claimed(resume=True):
+        state, identity_ = last_checkpoint(path, found)
+        with open_log(files.log):
             with blaming_plugins(plugins_of(found)):
                 simulation = Simulation(found)
-            restore(simulation, arrays)
-            threads = use_threads(threads, len(simulation.particles))
-            said = _attributes(found, threads, portable(found))
-            recorder = Recorder(simulation, said, RunDirectory(path), words["frames"])
-            recorder.restore(arrays, words)
-            watch = Stopwatch(words["wall_time"])
-            saver = Saver(recorder, watch, checkpoint_every, words["identity"])
-            _execute(recorder, threads, listen, watch, saver)
+            with using_threads(threads, len(simulation.particles)) as used:
+                if found.until != before.until:
+                    write_json(files.case, portable(found))
+                said = _attributes(found, used, portable(found))
+                recorder, watch = Recorder(simulation, said, files, goes_on=True), Stopwatch()
+                _restore(recorder, watch, state, path)
+                _execute(recorder, used, listen, watch, Saver(recorder, watch, checkpoint_every, identity_))
     return recorder.history.dataset()
+
+
+def _restore(recorder: Recorder, watch: Stopwatch, state: State, path: Path) -> None:
+    try:
+        restore(run_components(recorder, watch), state)
+    except (KeyError, ValueError) as error:
+        raise CaseError(
+            f"the run in '{path}' cannot go on: its checkpoint does not fit this version of mpmkit "
+            f"({reason(error)})"
+        ) from None
 
 
 def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str]:
@@ -141,23 +177,41 @@ def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str
 def _execute(
     recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
 ) -> None:
-    """Run to the end in a directory, and draw the pictures of it even if a guard stopped it."""
+    """Run to the end in a directory, and draw the pictures of it even if a guard stopped it.
+
+    Raises:
+        Undrawn: the run has finished, and was interrupted at its pictures.
+    """
+    for line in log_lines(recorder.simulation.case, threads):
+        RECORD.info("%s", line)
     try:
-        execute(recorder, watch, threads, listen, saver)
+        hurry = execute(recorder, watch, threads, listen, saver)
     except GuardStop:
-        _report(recorder)
+        try:
+            _report(recorder)
+        except Undrawn as undrawn:
+            LOGGER.warning("%s", undrawn)
         raise
-    _report(recorder)
+    _report(recorder, hurry)
 
 
-def _report(recorder: Recorder) -> None:
+def _report(recorder: Recorder, hurry: bool = False) -> None:
     """Draw the pictures. They can be drawn again from the directory: none is worth the outcome of a run."""
     case, directory = recorder.simulation.case, recorder.directory
     if not case.output.report or directory is None:
         return
     try:
+        if hurry:
+            raise KeyboardInterrupt
+        LOGGER.info("drawing the report")  # it takes a few seconds
         from ..report import write_report
 
-        write_report(directory.path)
+        for picture in write_report(directory.path):
+            LOGGER.info("picture: %s", picture)
+    except KeyboardInterrupt:
+        raise Undrawn(
+            f"the run has ended and its results are in '{directory.path}', but it was told to stop before "
+            f"all pictures were drawn; draw them with: mpmkit report {directory.path}"
+        ) from None
     except Exception as error:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)

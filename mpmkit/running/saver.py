@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import logging
 import time as clock
 from typing import Any
 
+from ..errors import OutputError, reason
 from ..output.checkpoints import Checkpoints
-from ..solver.state import state_of
+from ..solver.stateful import Stateful, state_of
 from .recorder import Recorder
 from .stopwatch import Stopwatch
+
+LOGGER = logging.getLogger("mpmkit")
+
+
+def run_components(recorder: Recorder, watch: Stopwatch) -> dict[str, Stateful]:
+    """Everything of a run that has a state, in the order in which it is restored."""
+    return {"simulation": recorder.simulation, "recorder": recorder, "watch": watch}
 
 
 class Saver:
@@ -18,7 +27,7 @@ class Saver:
         recorder: of the run; it has a directory.
         watch: its clock, which goes on where it was.
         every: wall time, s, between two checkpoints; None for none but those asked for.
-        identity: of the case, as ``mpmkit.resume`` has it.
+        identity: of the case, as ``resume`` has it.
     """
 
     def __init__(
@@ -33,10 +42,22 @@ class Saver:
         self._last = clock.monotonic()
 
     def save_if_due(self) -> None:
-        """Write a checkpoint if the last one is long enough ago."""
+        """Write a checkpoint if the last one is long enough ago; where that fails, the run goes on."""
         if self._every is not None and clock.monotonic() - self._last >= self._every:
-            self.save()
+            self.save_if_possible()
             self._last = clock.monotonic()
+
+    def save_if_possible(self) -> bool:
+        """Write a checkpoint, or warn that there is none: a run is not worth ending for it."""
+        try:
+            self.save()
+        except (OutputError, MemoryError) as error:
+            kept = "; the one before it stays" if self._checkpoints.paths() else ""
+            LOGGER.warning(
+                "no checkpoint at t = %.6g s: %s%s", self._recorder.simulation.time, reason(error), kept
+            )
+            return False
+        return True
 
     def save(self) -> None:
         """Write a checkpoint of the present state.
@@ -44,11 +65,9 @@ class Saver:
         Raises:
             OutputError: where it cannot be written.
         """
-        simulation = self._recorder.simulation
-        arrays, words = self._recorder.state()
-        words |= {"identity": self._identity, "wall_time": self._watch.elapsed}
-        self._checkpoints.write(simulation.steps, state_of(simulation) | arrays, words)
+        state = state_of(run_components(self._recorder, self._watch))
+        self._checkpoints.write(self._recorder.simulation.steps, state, {"identity": self._identity})
 
-    def remove(self) -> None:
-        """Remove the checkpoints of a run that has finished."""
-        self._checkpoints.remove()
+    def keep_last(self) -> None:
+        """Remove all checkpoints but the last, from which a run that has finished can go on for longer."""
+        self._checkpoints.keep_last()

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import time as clock
 
+import numpy as np
+
 
 class Stopwatch:
-    """Wall time of a run from its first step on, s: what it takes to load and compile is not the run's.
+    """Wall time of a run from its first step on, s: what it takes to load and compile is not the run's."""
 
-    Args:
-        before: what a run that goes on has taken up to its checkpoint.
-    """
-
-    def __init__(self, before: float = 0.0) -> None:
-        self._before = before
+    def __init__(self) -> None:
+        self._before = 0.0
+        """what a run that goes on has taken up to its checkpoint"""
         self._begin: float | None = None
+
+    def state(self) -> dict[str, np.ndarray]:
+        """The time so far."""
+        return {"elapsed": np.array(self.elapsed)}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Go on where the clock was."""
+        self._before, self._begin = float(state["elapsed"]), None
 
     def start(self) -> None:
         self._begin = clock.monotonic()

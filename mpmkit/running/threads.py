@@ -2,23 +2,49 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numba
 
 from ..errors import CaseError
 
+LOGGER = logging.getLogger("mpmkit")
 PARTICLES_PER_THREAD = 10_000
 """Below this a second thread costs more in waiting than it saves."""
 
 
-def use_threads(threads: int | None, particles: int) -> int:
-    """Set the number of threads: as told, or as many as the particles can keep busy. Returns it.
+def possible_threads(threads: int | None) -> int | None:
+    """As many threads as asked for, or as there can be; a warning says where that is fewer.
 
     Raises:
         CaseError: there cannot be so few.
     """
-    if threads is not None and threads < 1:
+    if threads is None:
+        return None
+    if threads < 1:
         raise CaseError(f"threads is {threads}; it must be a whole number of at least 1")
-    wanted = threads if threads is not None else max(1, particles // PARTICLES_PER_THREAD)
-    chosen = min(numba.config.NUMBA_NUM_THREADS, max(1, wanted))
+    most = numba.config.NUMBA_NUM_THREADS
+    if threads > most:
+        LOGGER.warning("threads is %d, but only %d can be used here; the run uses %d", threads, most, most)
+    return min(threads, most)
+
+
+@contextmanager
+def using_threads(threads: int | None, particles: int) -> Iterator[int]:
+    """Inside the block numba uses as many threads as asked for, or as the particles can keep busy.
+
+    Yields that number; behind the block it is what it was.
+
+    Raises:
+        CaseError: there cannot be so few.
+    """
+    asked = possible_threads(threads)
+    before = numba.get_num_threads()
+    chosen = asked or min(numba.config.NUMBA_NUM_THREADS, max(1, particles // PARTICLES_PER_THREAD))
     numba.set_num_threads(chosen)
-    return chosen
+    try:
+        yield chosen
+    finally:
+        numba.set_num_threads(before)

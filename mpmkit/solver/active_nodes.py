@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
-from ..kernels.nodes import OPEN, PERIODIC
+from ..kernels.nodes import OPEN, PERIODIC, PLANES
 from .grid import GHOST, Window
 from .tasks import cuts
+
+
+class Plane(NamedTuple):
+    """A plane of ghosts across an axis, that of their images, and that of the wall, counted in the window."""
+
+    ghost: int
+    image: int
+    wall: int
 
 
 class ActiveNodes:
@@ -18,8 +27,10 @@ class ActiveNodes:
         rows: ``(n, 2)``, the first node and the one after the last of every row along the last axis.
         tasks: ``(TASKS + 1,)``, rows cut into pieces of about equal load.
         faces: ``(dim, 2)``, the codes of the faces.
-        mirrors: ``(n, 3)``, ghost, image and node of the wall, face by face.
-        face_first: ``(2 dim + 1,)``, the first of ``mirrors`` of each face, and their number.
+        mirrors: ``(n, 3)``, ghost, image and node of the wall, plane by plane. No two of a plane share one.
+        plane_first: ``(3 dim + 1,)``, the first of ``mirrors`` of each plane, and their number. The planes
+            of an axis are the ghosts of its lower face, those of its upper face, and the upper face of a
+            periodic axis, which is an image of the lower one.
     """
 
     def __init__(self, window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
@@ -30,17 +41,17 @@ class ActiveNodes:
             highest_cell: the same at their other end.
         """
         dim = window.grid.dim
-        planes = [list(_planes(window, axis, side)) for axis in range(dim) for side in range(2)]
+        planes = [plane for axis in range(dim) for plane in _planes(window, axis)]
         touched = _touched(window, lowest_cell, highest_cell)
-        for face, of_face in enumerate(planes):
-            _close(touched, face // 2, of_face)
+        for k, plane in enumerate(planes):
+            _close(touched, k // PLANES, plane)
         self.rows = _rows(touched)
         self.tasks = cuts(np.concatenate([[0], np.cumsum(self.rows[:, 1] - self.rows[:, 0])]))
         self.faces = window.grid.faces
-        mirrors = [_mirrors(window, touched, face // 2, of_face) for face, of_face in enumerate(planes)]
+        mirrors = [_mirrors(window, touched, k // PLANES, plane) for k, plane in enumerate(planes)]
         self.mirrors = np.concatenate(mirrors)
-        self.face_first = np.concatenate([[0], np.cumsum([len(of_face) for of_face in mirrors])])
-        self.arguments = (self.rows, self.tasks, self.faces, self.mirrors, self.face_first)
+        self.plane_first = np.concatenate([[0], np.cumsum([len(of_plane) for of_plane in mirrors])])
+        self.arguments = (self.rows, self.tasks, self.faces, self.mirrors, self.plane_first)
 
 
 def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> np.ndarray:
@@ -52,12 +63,12 @@ def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) 
     return touched
 
 
-def _close(touched: np.ndarray, axis: int, planes: list[tuple[int, int, int]]) -> None:
+def _close(touched: np.ndarray, axis: int, plane: Plane | None) -> None:
     """With a ghost its image, and with an image its ghost: what is folded can be filled back."""
-    along = np.moveaxis(touched, axis, 0)
-    for ghost, image, _ in planes:
-        along[ghost] |= along[image]
-        along[image] = along[ghost]
+    if plane is not None:
+        along = np.moveaxis(touched, axis, 0)
+        along[plane.ghost] |= along[plane.image]
+        along[plane.image] = along[plane.ghost]
 
 
 def _rows(touched: np.ndarray) -> np.ndarray:
@@ -69,28 +80,38 @@ def _rows(touched: np.ndarray) -> np.ndarray:
     return np.stack([row * length + first, (row + 1) * length - behind], axis=1)
 
 
-def _mirrors(
-    window: Window, touched: np.ndarray, axis: int, planes: list[tuple[int, int, int]]
-) -> np.ndarray:
-    """(ghost, image, node of the wall) of all nodes behind a face that are touched."""
-    found = [np.empty((0, 3), dtype=np.int64)]
+def _mirrors(window: Window, touched: np.ndarray, axis: int, plane: Plane | None) -> np.ndarray:
+    """(ghost, image, node of the wall) of the nodes of a plane that are touched."""
+    if plane is None:
+        return np.empty((0, 3), dtype=np.int64)
     index = np.moveaxis(np.arange(touched.size).reshape(touched.shape), axis, 0)
-    for plane in planes:
-        ghosts = index[plane[0]][np.moveaxis(touched, axis, 0)[plane[0]]]
-        found.append(ghosts[:, None] + (np.array(plane) - plane[0]) * window.strides[axis])
-    return np.concatenate(found)
+    ghosts = index[plane.ghost][np.moveaxis(touched, axis, 0)[plane.ghost]]
+    return ghosts[:, None] + (np.array(plane) - plane.ghost) * window.strides[axis]
 
 
-def _planes(window: Window, axis: int, side: int) -> Iterator[tuple[int, int, int]]:
-    """Planes of ghosts of a face within the window, each with that of their images and with the wall's."""
+def _planes(window: Window, axis: int) -> Iterator[Plane | None]:
+    """The ``PLANES`` planes of an axis; None for one that its faces do not have, or that is not stored.
+
+    Planes are handled one after the other, since the images of two may be one: along a periodic axis of one
+    cell that of all three is the lower face.
+    """
+    lower, upper = (int(wall) for wall in window.walls[axis])
+    of_face = [_behind(window, axis, 0, lower), _behind(window, axis, 1, upper)]
+    if window.grid.faces[axis, 0] == PERIODIC:
+        of_face.append(Plane(upper, lower, upper))
+    else:
+        of_face.append(None)
+    for plane in of_face:
+        stored = plane is not None and min(plane) >= 0 and max(plane) < window.shape[axis]
+        yield plane if stored else None
+
+
+def _behind(window: Window, axis: int, side: int, wall: int) -> Plane | None:
+    """The ghosts behind a face."""
     face, inward = window.grid.faces[axis, side], 1 - 2 * side
-    lower, wall = int(window.walls[axis, 0]), int(window.walls[axis, side])
-    pairs = []
-    if face == PERIODIC:  # the upper wall is an image of the lower one
-        ghosts = (wall - inward * GHOST, wall)[: 1 + side]
-        pairs = [(ghost, lower + (ghost - lower) % int(window.grid.cells[axis])) for ghost in ghosts]
-    elif face != OPEN:
-        pairs = [(wall - inward, wall + inward)]
-    for ghost, image in pairs:
-        if min(ghost, image) >= 0 and max(ghost, image) < window.shape[axis]:
-            yield ghost, image, wall
+    if face == OPEN:
+        return None
+    if face == PERIODIC:
+        lower, ghost = int(window.walls[axis, 0]), wall - inward * GHOST
+        return Plane(ghost, lower + (ghost - lower) % int(window.grid.cells[axis]), wall)
+    return Plane(wall - inward, wall + inward, wall)

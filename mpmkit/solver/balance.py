@@ -7,9 +7,13 @@ import numpy as np
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy, weighted
 from .grid import Grid
 from .particles import Particles
+from .stateful import State, plain_state, restore_plain
 
 CREATED = 0.2
 """Energy from nowhere, over the energy that the scene had to move with, that is not taken for long."""
+CREATED_BY_SOLIDS = 0.02
+"""The same where all materials are solids: nothing pushes their particles apart, which takes energy from
+nowhere, and what an order creates in a wave of small strain is less."""
 LOOKS = 10
 """Looks in a row at which there may be as much."""
 MOST_CREATED = 1.0
@@ -30,8 +34,8 @@ class EnergyBalance:
 
     with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
     particles have come down by, and, along a periodic axis, which has no height, the integral of its power.
-    A sound speed that follows the flow changes U from outside, and so does splitting, which leaves part of
-    the affine velocity to the halves: both are taken as put in.
+    Splitting leaves part of the affine velocity to the halves: that is taken as put in. A sound speed that
+    follows the flow changes at the same U, see ``solver.sound``, and is forgiven nothing.
     """
 
     def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray, time: float) -> None:
@@ -42,11 +46,21 @@ class EnergyBalance:
         self._time, self._power = time, self._power_along(particles)
         self._put_in = self._most_work = 0.0
         self.created = 0.0
+        solid = not any(group.law.uses_equation_of_state for group in particles.groups)
+        self._tolerated = CREATED_BY_SOLIDS if solid else CREATED
         self._looks_too_high = 0
         mass = float(np.sum(particles.mass))
         fastest = max(group.wave_speed for group in particles.groups)
         # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
         self._least = mass * (float(np.linalg.norm(gravity)) * grid.cell_size + ROUNDING * fastest**2)
+
+    def state(self) -> State:
+        """All its numbers."""
+        return plain_state(self)
+
+    def restore(self, state: State) -> None:
+        """Take its numbers back."""
+        restore_plain(self, state)
 
     def update(self, p: Particles, time: float) -> None:
         """Take the energies of the present state."""
@@ -57,7 +71,7 @@ class EnergyBalance:
         work = self._height - potential_energy(p, self._downwards) + self._put_in
         self._most_work = max(self._most_work, abs(work))
         self.created = self.held - self._first - work
-        self._looks_too_high = self._looks_too_high + 1 if self.excess > CREATED else 0
+        self._looks_too_high = self._looks_too_high + 1 if self.excess > self._tolerated else 0
 
     def accept(self, p: Particles) -> None:
         """Take what has become of the energy since ``update`` as put in from outside."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contracts import Plugin
 from ..kernels import sums
-from ..registry.audit import require_shape
-from .particles import Particles
+from ..registry.audit import require_array, require_energy, require_number
+from .particles import Group, Particles
 
 
 def kinetic_energy(p: Particles) -> float:
@@ -19,12 +20,15 @@ def strain_energy(p: Particles) -> float:
     total = 0.0
     for group in p.groups:
         volume = p.initial_volume[group.part]
-        density = group.law.strain_energy(p.motion(group), group.state, p.stress[group.part])
-        if np.ndim(density):
-            require_shape(group.law, "strain_energy", density, volume.shape)
+        law = group.law
+        density = law.strain_energy(p.kinematics(group), group.state, p.stress[group.part])
+        if isinstance(density, np.ndarray) and density.ndim:
+            require_array(law, "strain_energy", density, volume.shape)
+            _require_stored(p, group, law, density)
             total += _integral(density, volume)
-        elif density:
-            total += float(density) * float(np.sum(volume))
+        elif density := require_number(law, "strain_energy", density):
+            _require_stored(p, group, law, np.full(1, density))
+            total += density * float(np.sum(volume))
     return total
 
 
@@ -34,10 +38,19 @@ def compressive_energy(p: Particles) -> float:
     for group in p.groups:
         if group.law.uses_equation_of_state:
             volume = p.initial_volume[group.part]
+            author = group.equation_of_state
             density = group.compressive_energy(p.volume_ratio[group.part])
-            require_shape(group.equation_of_state, "energy", density, volume.shape)
+            require_array(author, "energy", density, volume.shape)
+            _require_stored(p, group, author, density)
             total += _integral(density, volume)
     return total
+
+
+def _require_stored(p: Particles, group: Group, author: Plugin, density: np.ndarray) -> None:
+    """Of a law that does work of its own nothing is known: its energy is not guarded either."""
+    if group.law.passive:
+        part, modulus = group.part, group.density * group.wave_speed**2
+        require_energy(author, density, p.number[part], p.volume_ratio[part], p.stress[part], modulus)
 
 
 def _integral(density: np.ndarray | float, volume: np.ndarray) -> float:

@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..case.model import Case, Friction
+from ..case.faces import Friction
+from ..case.model import Case
 from ..kernels import nodes as node_kernels
 from ..kernels.scatter import CONTACT, NODE, PAIR
 from ..kernels.vectors import LANES
+from .stateful import State
 
 FACE_CODES = {
     "open": node_kernels.OPEN,
@@ -18,6 +20,9 @@ FACE_CODES = {
     "stick": node_kernels.STICK,
     "periodic": node_kernels.PERIODIC,
 }
+KEPT = (0, CONTACT)
+"""Entries of a node's record, its mass and its contact, that are read before a step writes them again: by the
+guard of the mass, and by the friction of a wall."""
 GHOST = 1
 """Layers of nodes beyond each face: as many as the widest particle at a face can touch."""
 
@@ -89,6 +94,8 @@ class Window:
     """(nodes, 2) the sums of an average; zero in between"""
     average: np.ndarray = field(init=False)
     """(nodes, 1) and the average itself"""
+    _cells: tuple[np.ndarray, np.ndarray] | None = field(init=False, default=None)
+    """Lowest and highest cell that the window was laid for; None before the first time."""
     _capacity: int = field(init=False, default=0)
     _stores: list[np.ndarray] = field(init=False)
 
@@ -106,11 +113,33 @@ class Window:
 
     def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """Lay the window over the nodes that particles in these cells can touch; all are zero."""
-        grid = self.grid
         contacts = self._contacts()
+        self._lay(lowest_cell, highest_cell)
+        if contacts is not None:
+            self._restore_contacts(*contacts)
+
+    def state(self) -> State:
+        """Where the window lies, and of its nodes what a step leaves behind: their masses and contacts."""
+        if self._cells is None:
+            return {}
+        low, high = self._cells
+        return {"low": low, "high": high, "kept": self.nodes[:, list(KEPT)]}
+
+    def restore(self, state: State) -> None:
+        """Lay the window where it was, in memory of its own."""
+        self._capacity, self._cells = 0, None
+        if state:
+            self._lay(state["low"].copy(), state["high"].copy())
+            self.nodes[:, list(KEPT)] = state["kept"]
+
+    def _lay(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
+        grid = self.grid
+        self._cells = lowest_cell, highest_cell
         low, high = self.touchable(lowest_cell, highest_cell)
-        size = [int(n) for n in high - low + 1]
-        size[-1] += 2  # rows of pairs are as wide as a vector: they reach beyond what a particle touches
+        # One node beyond what is touched, which gets nothing but zeros: a particle on an upper face counts to
+        # the cell beyond it, and the last of the nodes there that a shape function names has no weight.
+        size = [int(n) + 1 for n in high - low + 1]
+        size[-1] += 1  # rows of pairs are as wide as a vector, and reach one node further
         size += [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
         self.shape = (size[0], size[1], size[2])
@@ -126,12 +155,10 @@ class Window:
         )
         self.nodes[:] = 0.0
         self.average[:] = 0.0
-        if contacts is not None:
-            self._restore_contacts(*contacts)
 
     def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Which nodes touch a Coulomb wall, and the block's lower corner: all that outlives a window."""
-        if not hasattr(self, "nodes") or not (self.grid.faces == node_kernels.FRICTION).any():
+        if self._cells is None or not (self.grid.faces == node_kernels.FRICTION).any():
             return None
         return self.lower, self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim]).copy()
 

@@ -10,7 +10,9 @@ from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
+from ..registry.audit import require_sentences
 from .balance import EnergyBalance
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import warnings
 from .view import SceneView
 
@@ -35,13 +37,31 @@ class Guards:
         self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
 
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own."""
+        return {} if self.balance is None else {"balance": self.balance}
+
+    def state(self) -> State:
+        """What the guards remember of the run: without it, a run that goes on would be forgiven."""
+        return plain_state(self, but=("balance",)) | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back what was remembered, for particles that are in their state already."""
+        self.balance = self._new_balance() if any("/" in name for name in state) else None
+        restore(self.components, state)
+        restore_plain(self, state)
+
     def begin(self) -> None:
-        """Take mass and energy of the state in which the scene begins, or goes on."""
-        s = self._scene
+        """Take mass and energy of the state in which the scene begins."""
         if self._mass is None:
-            self._mass = float(np.sum(s.particles.mass))
+            self._mass = float(np.sum(self._scene.particles.mass))
             if self.watches_energy:
-                self.balance = EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
+                self.balance = self._new_balance()
+
+    def _new_balance(self) -> EnergyBalance:
+        s = self._scene
+        return EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
 
     def check(self) -> None:
         """Raise GuardStop if a particle is unsound, if mass got lost, or if energy came from nowhere.
@@ -63,7 +83,7 @@ class Guards:
                 self._stop_of_energy(self.balance)
 
     def accept_changes(self) -> None:
-        """To be called where splitting, or a sound speed that follows the flow, has changed energies."""
+        """To be called where splitting has changed energies."""
         if self.balance is not None:
             self.balance.accept(self._scene.particles)
 
@@ -99,14 +119,21 @@ class Guards:
             )
         mapped = s.mapped_mass
         if mapped is not None and not abs(mapped - mass) <= DRIFT * mass:
-            total = s.sum_of_weights()
-            worst = int(np.argmax(np.abs(total - 1)))
-            if not abs(total[worst] - 1) <= DRIFT:
-                what = f"gave particle {p.number[worst]} weights that sum to {total[worst]:.9g} and not to 1"
-                raise PluginFault(s.case.scheme.shape, what, particle=int(p.number[worst]))
+            worst = self._require_weights()
             what = f"and the others have {mass:.9g} kg, but the nodes have got {mapped:.9g} kg of it"
             order = f"order '{s.case.scheme.order.name}' may not map it; try another one"
             raise _stopped(s, "mass-drift", worst, what, order)
+
+    def _require_weights(self) -> int:
+        """The particle whose sum of weights is farthest from one; PluginFault if by more than rounding."""
+        s = self._scene
+        total = s.sum_of_weights()
+        worst = int(np.argmax(np.abs(total - 1)))
+        if not abs(total[worst] - 1) <= DRIFT:
+            number = int(s.particles.number[worst])
+            what = f"gave particle {number} weights that sum to {total[worst]:.9g} and not to 1"
+            raise PluginFault(s.case.scheme.shape, what, particle=number)
+        return worst
 
     def _stop_of_energy(self, balance: EnergyBalance) -> NoReturn:
         s = self._scene
@@ -120,7 +147,12 @@ class Guards:
 
 
 def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
-    """Raise the GuardStop that fits what has become of a particle."""
+    """Raise the GuardStop that fits what has become of a particle.
+
+    Raises:
+        PluginFault: weights that cannot be right have made it so.
+    """
+    s.require_tables()
     p, axes = s.particles, s.grid.axes
     position = p.position[index] + s.grid.lower
     state = np.concatenate([position, p.velocity[index], p.stress[index], p.pressure[index : index + 1]])
@@ -146,8 +178,12 @@ def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = Fa
     else:
         guard = "particle-outside"
         where = ", ".join(f"{axis} = {x:.4g}" for axis, x in zip(axes, position, strict=True))
-        what = f"left the grid at {where} m"
-        why = f"enlarge grid.domain or close that face; or, if it was thrown out, {why}"
+        what, open_ = f"left the grid at {where} m", _open_faces(s, position)
+        if open_:
+            faces = " and ".join(open_)
+            why = f"enlarge grid.domain or close that face, {faces}; or, if it was thrown out, {why}"
+        else:
+            what += ", through a face that is closed"
     raise _stopped(s, guard, index, what, why)
 
 
@@ -158,10 +194,38 @@ def remedy(s: SceneView) -> str:
     if exceeded:
         return f"likely since {exceeded[0]}: take that limit out of it"
     for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric):
-        for caution in plugin.cautions(s.case):
+        for caution in require_sentences(plugin, "cautions", plugin.cautions(s.case)):
             return f"likely since {caution}"
-    fraction = scheme.time_step.fraction
-    return f"likely the step is too long: reduce scheme.time_step.fraction, which is {fraction:g}"
+    step = f"reduce scheme.time_step.fraction, which is {scheme.time_step.fraction:g}"
+    torn = _torn(s)
+    if torn > 0:
+        cure = "smaller cells" if scheme.splitting else "smaller cells or scheme.splitting"
+        return (
+            f"the material is torn: {100 * torn:.2g} % of its volume is in boxes longer than a cell, which "
+            f"no shorter step mends, but {cure} may; if it holds longer with a shorter step, {step}"
+        )
+    return f"likely the step is too long: {step}; it is not, if half of that stops at the same time"
+
+
+def _torn(s: SceneView) -> float:
+    """Part of the volume in boxes that are drawn out longer than a cell along an axis."""
+    p = s.particles
+    volume = np.where(np.isfinite(p.volume), p.volume, 0.0)
+    drawn_out = (2 * p.box > s.grid.cell_size * (1 + 1e-9)).any(axis=1)
+    return float(volume[drawn_out].sum() / volume.sum()) if drawn_out.any() else 0.0
+
+
+def _open_faces(s: SceneView, position: np.ndarray) -> list[str]:
+    """Of the faces beyond which a position lies, those that are open."""
+    faces = s.case.grid.faces
+    lower, upper = s.case.domain_bounds
+    beyond = [
+        f"{axis}_{side}"
+        for a, axis in enumerate(s.grid.axes)
+        for side, out in (("min", position[a] < lower[a]), ("max", position[a] > upper[a]))
+        if out
+    ]
+    return [name for name in beyond if faces.get(name, "open") == "open" and name != "r_min"]
 
 
 def _fastest(s: SceneView) -> int:

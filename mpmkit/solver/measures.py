@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..case.model import Case
-from ..kernels.tensors import shear_rate
+from ..kernels.extents import extents
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from .grid import Grid
 from .particles import Particles
@@ -45,7 +44,7 @@ class Measures:
         # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
         return {
-            "spread_diameter": self._spread(p, inside),
+            "spread_diameter": self.spread(p),
             "height": height,
             "axis_height": axis_height,
             "slump": self.initial_height - axis_height,
@@ -60,15 +59,14 @@ class Measures:
             "fractured_fraction": self.fractured(p),
         }
 
-    def _spread(self, p: Particles, of: np.ndarray) -> float:
+    def spread(self, p: Particles) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
-        diameters = []
-        for a in range(self.grid.dim - 1):
-            if self.grid.periodic[a] or not of.any():
+        grid, diameters = self.grid, []
+        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, grid.periodic)
+        for a, (low, high) in enumerate(ends.tolist()):
+            if grid.periodic[a] or low > high:
                 continue
-            high = float((p.position[:, a] + p.box[:, a])[of].max())
-            low = float((p.position[:, a] - p.box[:, a])[of].min())
-            plane = _symmetry_plane(self.case, self.grid, a)
+            plane = _symmetry_plane(self.case, grid, a)
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return float(np.mean(diameters)) if diameters else np.nan
 
@@ -103,39 +101,3 @@ def _symmetry_plane(case: Case, grid: Grid, axis: int) -> float | None:
         if case.grid.faces.get(f"{grid.axes[axis]}_{side}") == "symmetry":
             return position
     return None
-
-
-def cauchy_stress(p: Particles) -> np.ndarray:
-    """Cauchy stress, Pa, ``(n, 6)``, tension positive: the extra stress minus the pressure."""
-    stress = p.stress.copy()
-    stress[:, :3] -= p.mapped_pressure[:, None]
-    return stress
-
-
-def mean_pressure(p: Particles) -> np.ndarray:
-    """Minus the mean normal stress, Pa, ``(n,)``; a solid has it too, though no equation of state."""
-    return p.mapped_pressure - p.stress[:, :3].sum(axis=1) / 3
-
-
-PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
-    "position": lambda p, grid: p.position + grid.lower,
-    "velocity": lambda p, grid: p.velocity,
-    "stress": lambda p, grid: cauchy_stress(p),
-    "pressure": lambda p, grid: mean_pressure(p),
-    "volume_ratio": lambda p, grid: p.volume_ratio,
-}
-"""Particle fields that a history can keep."""
-
-
-def frame_fields(p: Particles) -> dict[str, np.ndarray]:
-    """What a frame shows of every particle."""
-    return {
-        "velocity": p.velocity,
-        "speed": np.sqrt(np.einsum("pi,pi->p", p.velocity, p.velocity)),
-        "pressure": mean_pressure(p),
-        "half_size": p.box,
-        "volume_ratio": p.volume_ratio,
-        "shear_rate": shear_rate(p.velocity_gradient),
-        "body": p.body,
-        "particle": p.number,
-    }

@@ -5,14 +5,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import psutil
 
 from ..case.model import Case
 from ..case.output import ROWS
+from ..case.plugins import plugins_of
+from ..case.state_variables import state_variables
+from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
 from ..output import PARTICLE_VARIABLES
+from ..registry import audit
+from ..registry.blame import blaming_plugins
+from .available_memory import available_memory
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -21,6 +26,8 @@ PASSING = 4
 """Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
 """A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
+COPY = 1.125
+"""Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
 MARGIN = 5
 """Nodes along an axis by which the window is wider than the cells of the material."""
 
@@ -48,16 +55,35 @@ def expected_bytes(case: Case, particles: float) -> int:
     return int(particles * (bytes_per_particle(case) + kept) + window_nodes(case) * DOUBLES_PER_NODE * DOUBLE)
 
 
+def checkpoint_bytes(case: Case, particles: float) -> int:
+    """Memory that is held for a moment while a checkpoint is written.
+
+    It is a copy of the state of all particles, and of the rows of the history that are kept.
+    """
+    kept = _kept_rows(case) * _doubles_per_row(case) / 2
+    return int(COPY * particles * DOUBLE * (_state_doubles(case) + kept))
+
+
 def bytes_per_particle(case: Case) -> int:
     """State of a particle, its tables of weights, and what is held of it for a moment."""
     dim, support = case.space_.dim, case.scheme.shape.support
+    tables = 2 * dim * support + support * case.space_.radial
+    body_and_base = (1 + dim) * INDEX
+    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base)
+
+
+def _state_doubles(case: Case) -> int:
+    """Numbers that a particle carries from step to step."""
+    dim = case.space_.dim
     laws = [body.material.constitutive_law for body in case.bodies]
+    with blaming_plugins(plugins_of(case)):  # they say what a particle carries
+        state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
+        has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
     number_mass_volumes_pressures_rate = 8
-    vectors = 4 * dim + dim * (case.scheme.shape.particle_domain != "fixed")
+    vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
-    state = max(sum(math.prod(v.shape) for v in law.state.values()) for law in laws)
-    doubles = (
+    return (
         number_mass_volumes_pressures_rate
         + vectors
         + affine
@@ -65,9 +91,6 @@ def bytes_per_particle(case: Case) -> int:
         + 9 * tracks_deformation(case)
         + state
     )
-    tables = 2 * dim * support + support * case.space_.radial
-    body_and_base = (1 + dim) * INDEX
-    return int(DOUBLE * (doubles + tables + PASSING) + body_and_base)
 
 
 def window_nodes(case: Case) -> float:
@@ -93,26 +116,28 @@ def _kept_rows(case: Case) -> float:
 def _doubles_per_row(case: Case) -> int:
     """Numbers a particle that a row of the history keeps, twice: once more while the file is written."""
     width = {"component": case.space_.dim, "tensor_component": 6}
-    fields = [PARTICLE_VARIABLES[name] for name in case.output.particle_history]
-    return 2 * sum(math.prod(width[dimension] for dimension in field.trailing) for field in fields)
+    known = PARTICLE_VARIABLES | state_variables(case)
+    fields = [known[name] for name in case.output.particle_history]
+    return 2 * sum(math.prod(f.shape or [width[dimension] for dimension in f.trailing]) for f in fields)
 
 
 def require_memory(case: Case) -> None:
-    """Refuse a case that needs more memory than the machine has.
+    """Refuse a case that needs more memory than there is for this run, its first checkpoint included.
 
     Raises:
         CaseError: says how much is needed and how much there is.
     """
     particles = expected_particles(case)
-    needed, there = expected_bytes(case, particles), psutil.virtual_memory().total
+    needed = expected_bytes(case, particles) + checkpoint_bytes(case, particles)
+    there = available_memory()
     if needed > there:
         if window_nodes(case) * DOUBLES_PER_NODE * DOUBLE > needed / 2:
             raise CaseError(_too_wide(case, needed, there))
         fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
-            f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)}; use larger cells, "
-            f"fewer particles a cell, {fewer_rows}or a symmetry plane"
+            f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)} left for this run; "
+            f"use larger cells, fewer particles a cell, {fewer_rows}or a symmetry plane"
         )
 
 
@@ -125,7 +150,7 @@ def _too_wide(case: Case, needed: float, there: float) -> str:
     return (
         f"grid.cell_size is {case.grid.cell_size:g} m, and the window over all bodies{between} spans "
         f"{spans} m: its {window_nodes(case):.3g} nodes need {_gib(needed)} of memory, but this machine has "
-        f"{_gib(there)}; use larger cells{closer}"
+        f"{_gib(there)} left for this run; use larger cells{closer}"
     )
 
 

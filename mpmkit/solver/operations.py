@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
+from typing import Any
 
 import numpy as np
 
 from ..case.model import Scheme
-from ..contracts.operations import Measure
+from ..contracts.operations import Weighting
+from ..contracts.version1 import operations_for
 from ..errors import PluginFault
 from ..kernels import domains, nodes, tensors, volumes
 from ..kernels.gather import gather
@@ -19,9 +22,12 @@ from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
+FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
+"""Arrays that are made of the case, or that a step fills before it reads them; the weights are kept apart."""
 
 
 class SceneOperations:
@@ -46,7 +52,8 @@ class SceneOperations:
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
         self._begun = 0
-        self._auditing = True
+        self._auditing = self._rehearsing = True
+        self._account = audit.Account()
         self.allocate()
 
     def allocate(self) -> None:
@@ -63,6 +70,29 @@ class SceneOperations:
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
+
+    # --- State
+
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own, in the order in which it is restored."""
+        return {
+            "window": self.window,
+            "sorting": self.sorting,
+            "relaxation": self.relaxation,
+            "stage": self.stage,
+        }
+
+    def state(self) -> State:
+        """Its numbers, its components, and the last weights, which the guard of the mass reads."""
+        return plain_state(self, but=FILLED_ANEW) | {"weight/": self.weight} | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back a state, for particles that are in theirs already."""
+        self.allocate()
+        self.weight[...] = state["weight/"]
+        restore(self.components, state)
+        restore_plain(self, state)
 
     # --- The frame of a step
 
@@ -92,6 +122,15 @@ class SceneOperations:
             tables = tuple(table[:, 1:] for table in tables)  # type: ignore[assignment]
         position, half_size, base, weight, gradient = tables
         shape.fill(position, half_size, dx, base, weight, gradient)
+        audit.require_bounds(shape, p.position, dx, self.base, p.number)
+        if self._begun % audit.LOOKS == 1:
+            self.require_tables()
+
+    def require_tables(self) -> None:
+        """Raise PluginFault if the weights of the present step cannot be right."""
+        shape, numbers = self.scheme.shape, self.particles.number
+        audit.require_weights(shape, self.weight, self.gradient, self.grid.cell_size, numbers)
+        audit.require_finite(shape, "a 'hoop'", self.hoop, numbers, ())
 
     def start(self) -> None:
         """Before the first step: read the affine part of an initial velocity off the grid."""
@@ -101,7 +140,13 @@ class SceneOperations:
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
-        self.scheme.order.step(self, dt)
+        self._account.begin()
+        try:
+            self.scheme.order.step(operations_for(self.scheme.order, self), dt)
+        except PluginFault:  # of one that was given nonsense, if the weights are wrong
+            self.require_tables()
+            raise
+        self._account.require_whole(self.scheme.order, dt)
         self._stepped = True
 
     # --- Particles to nodes
@@ -112,11 +157,13 @@ class SceneOperations:
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
         nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
+        self._account.mapped(forces)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
         self._map(momentum=False, forces=True)
         self._fold(1 + dim, 1 + 2 * dim)
+        self._account.forced()
 
     def remap_velocity(self) -> None:
         self.map_to_grid(forces=False)
@@ -136,7 +183,7 @@ class SceneOperations:
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
-        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.face_first, first, last, True)
+        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.plane_first, first, last, True)
 
     # --- Nodes
 
@@ -146,24 +193,38 @@ class SceneOperations:
         return float(self.window.nodes[:, 0].sum()) if self._stepped else None
 
     def solve_momentum(self, dt: float) -> None:
+        self._account.solved(dt)
         nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
 
     # --- Nodes to particles
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
+        self._account.moves(dt)
         self._gradient_due = velocity_gradient
-        self.scheme.velocity.map_to_particles(self, dt)
+        moves = self.gravity.any() or self.particles.velocity.any()
+        before = self._places() if self._rehearsing and moves else None
+        self.scheme.velocity.map_to_particles(operations_for(self.scheme.velocity, self), dt)
+        by_itself = before is None or not np.array_equal(before, self._places())
+        self._account.require_moved(self.scheme.velocity, dt, by_itself)
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
 
-    def advance(self, dt: float, *, flip: float, affine: bool = False) -> None:
-        if not math.isfinite(flip):
+    def _places(self) -> np.ndarray:
+        """Where some of the particles are, to see whether they are moved."""
+        return self.particles.position[: audit.SAMPLE].copy()
+
+    def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
+        self._account.advances(dt)
+        if not isinstance(flip, float | Real) or not math.isfinite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
+        if self._gradient_due:
+            self._account.graded()
         self._gradient_due = False
 
     def update_velocity_gradient(self) -> None:
         self._take(strain=True)
+        self._account.graded()
         self._gradient_due = False
 
     def _take(
@@ -184,18 +245,23 @@ class SceneOperations:
 
     def update_stress(self, dt: float) -> None:
         p = self.particles
+        self._account.stressed(dt)
         self._update_volumes(dt)
         self._follow_domains(dt)
         for group in p.groups:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
-        p, motion, stress = self.particles, self.particles.motion(group), self.particles.stress[group.part]
+        p, kinematics, stress = (
+            self.particles,
+            self.particles.kinematics(group),
+            self.particles.stress[group.part],
+        )
         if self._rehearsing:
-            audit.rehearse_law(group.law, motion, group.state, stress, dt, p.number[group.part])
-        group.law.update_stress(motion, group.state, dt, stress)
+            audit.rehearse_law(group.law, kinematics, group.state, stress, dt, p.number[group.part])
+        group.law.update_stress(kinematics, group.state, dt, stress)
         if self._auditing:
-            audit.require_stress(group.law, motion, dt, stress, p.number[group.part])
+            audit.require_stress(group.law, kinematics, dt, stress, p.number[group.part])
 
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
@@ -213,8 +279,12 @@ class SceneOperations:
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
 
     def _pressure(self, group: Group, volume_ratio: np.ndarray) -> np.ndarray:
-        pressure, author = group.pressure(volume_ratio), group.equation_of_state
-        audit.require_shape(author, "pressure", pressure, volume_ratio.shape)
+        author, speed = group.equation_of_state, group.sound_speed
+        if self._rehearsing and speed is not None:
+            numbers = self.particles.number[group.part]
+            audit.rehearse_equation_of_state(author, volume_ratio, group.density, speed, numbers)
+        pressure = group.pressure(volume_ratio)
+        audit.require_array(author, "pressure", pressure, volume_ratio.shape)
         if self._auditing:
             numbers = self.particles.number[group.part]
             audit.require_finite(author, "a pressure", pressure, numbers, [volume_ratio])
@@ -236,42 +306,70 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        treated, author = self.scheme.volumetric.average(self, field), self.scheme.volumetric
+        author, groups = self.scheme.volumetric, self.particles.groups
+        operations = operations_for(author, self)
+        if self._rehearsing:
+            rehearsed = audit.Rehearsed(field)
+            treated = rehearsed.result(author, author.average(operations, rehearsed.field))
+        else:
+            treated = author.average(operations, field)
         if treated is not field:
-            audit.require_shape(author, "average", treated, field.shape)
+            audit.require_array(author, "average", treated, field.shape)
             if self._auditing:
                 audit.require_finite(author, "an average", treated, self.particles.number, [field])
-            for group in self.particles.groups:
-                if not group.law.uses_equation_of_state:
-                    treated[group.part] = field[group.part]
+            if not all(group.law.uses_equation_of_state for group in groups):
+                treated = treated.copy()  # which may be one that the treatment keeps
+                for group in groups:
+                    if not group.law.uses_equation_of_state:
+                        treated[group.part] = field[group.part]
         return treated
 
     def relax_volume(self, dt: float) -> None:
         if self.scheme.redistribution.equal_boxes:
             return
-        self.relaxation.relax(self.averager, self.scheme.volumetric.relaxation_rate(self), dt)
+        author = self.scheme.volumetric
+        asked = author.relaxation_rate(operations_for(author, self))
+        rate = audit.require_number(author, "relaxation_rate", asked)
+        self.relaxation.relax(self.averager, rate, dt)
 
     # --- Fields in general
 
-    def average(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        _require_field(values, len(self.particles))
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.averager.at_particles()
 
-    def particles_to_nodes(self, values: np.ndarray, measure: Measure = "volume") -> np.ndarray:
-        self.averager.at_nodes(values, self._weights(measure))
+    def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
+        _require_field(values, len(self.particles))
+        self.averager.at_nodes(values, self._weights(weighting))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
+        _require_field(nodal, len(self.window.average))
         self.window.average[:, 0] = nodal
         return self.averager.at_particles()
 
-    def _weights(self, name: Measure) -> np.ndarray:
+    def _weights(self, weighting: Weighting) -> np.ndarray:
         """Weight of every particle in an average; volumes only of what has an equation of state."""
         p = self.particles
-        measure = p.mass if name == "mass" else p.volume
-        if name != "mass" and not all(group.law.uses_equation_of_state for group in p.groups):
-            measure = measure.copy()
-            for group in p.groups:
-                if not group.law.uses_equation_of_state:
-                    measure[group.part] = 0.0
-        return measure
+        if weighting not in ("mass", "volume"):
+            asked = f"asked for an average by {weighting!r}; it must be by 'mass' or 'volume'"
+            raise PluginFault(None, asked)
+        if weighting == "mass" or all(group.law.uses_equation_of_state for group in p.groups):
+            return p.mass if weighting == "mass" else p.volume
+        weights = p.volume.copy()
+        for group in p.groups:
+            if not group.law.uses_equation_of_state:
+                weights[group.part] = 0.0
+        return weights
+
+
+def _require_field(values: Any, count: int) -> None:
+    """Raise PluginFault, of the plug-in that called, unless values are ``count`` real numbers."""
+    if not isinstance(values, np.ndarray) or values.shape != (count,) or values.dtype.kind not in "fiu":
+        what = (
+            f"{values.shape} of {values.dtype}" if isinstance(values, np.ndarray) else type(values).__name__
+        )
+        raise PluginFault(
+            None, f"asked for an average of {what}; it must be an array of {count} real numbers"
+        )

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..contracts import ConstitutiveLaw, EquationOfState, Motion
+from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
+from ..contracts.scale import Scale
+from ..errors import PluginFault
 from ..kernels.sort import permute
+from ..registry.audit import require_number, require_sentences
+from .stateful import State, plain_state, restore_plain
+
+STIFFER = 1.05
+"""Wave speed over that of the unstrained material from which on the step follows it."""
 
 
 @dataclass
@@ -26,13 +34,27 @@ class Group:
 
     @property
     def wave_speed(self) -> float:
-        """Fastest wave of the law, m/s."""
-        return self.law.wave_speed(self.density, self.sound_speed)
+        """Fastest wave of the unstrained material, m/s.
+
+        Raises:
+            PluginFault: it is no number, or not positive.
+        """
+        given = self.law.wave_speed(self.density, self.sound_speed)
+        speed = require_number(self.law, "wave_speed", given)
+        if not speed > 0 and (self.sound_speed is None or math.isfinite(self.sound_speed)):
+            raise PluginFault(self.law, f"has a wave speed of {speed} m/s; it must be positive")
+        return speed
 
     @property
     def remarks(self) -> list[str]:
         """What the law has to say of itself in this material."""
-        return self.law.remarks(self.density, self.sound_speed)
+        said = self.law.remarks(self.density, self.sound_speed)
+        return require_sentences(self.law, "remarks", said)
+
+    def warnings(self, scale: Scale, until: float) -> list[str]:
+        """What should not be trusted of this material in a scene that runs for ``until`` s."""
+        said = self.law.warnings(self.density, self.sound_speed, scale, until)
+        return require_sentences(self.law, "warnings", said)
 
     def pressure(self, volume_ratio: np.ndarray) -> np.ndarray:
         """Pressure of the equation of state, Pa; for a law that uses one."""
@@ -91,6 +113,26 @@ class Particles:
         """Every array that has an entry a particle, by name."""
         return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
 
+    def state(self) -> State:
+        """All arrays, and of each group its numbers, its part and the state of its law."""
+        found = plain_state(self)
+        for index, group in enumerate(self.groups):
+            own = plain_state(group) | {"part/": np.array([group.part.start, group.part.stop])}
+            own |= {f"law/{name}": array for name, array in group.state.items()}
+            found |= {f"group/{index}/{name}": value for name, value in own.items()}
+        return found
+
+    def restore(self, state: State) -> None:
+        """Take back a state of the same groups."""
+        restore_plain(self, state)
+        for index, group in enumerate(self.groups):
+            prefix = f"group/{index}/"
+            own = {key.removeprefix(prefix): v for key, v in state.items() if key.startswith(prefix)}
+            restore_plain(group, own)
+            start, stop = own["part/"]
+            group.part = slice(int(start), int(stop))
+            group.state = {name: own[f"law/{name}"].copy() for name in group.law.state}
+
     def take(self, index: np.ndarray) -> None:
         """Replace every array by its entries at ``index``, which must leave each group in its own part."""
         parts = [np.searchsorted(index, [group.part.start, group.part.stop]) for group in self.groups]
@@ -113,10 +155,10 @@ class Particles:
             for array in group.state.values():
                 array[...] = array[local]
 
-    def motion(self, group: Group) -> Motion:
+    def kinematics(self, group: Group) -> Kinematics:
         """What the law of a group is told of its particles."""
         part, F = group.part, self.deformation_gradient
-        return Motion(
+        return Kinematics(
             velocity_gradient=self.velocity_gradient[part],
             volume_ratio=self.volume_ratio[part],
             pressure=self.pressure[part],
@@ -124,6 +166,19 @@ class Particles:
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
         )
+
+    def wave_speed(self, group: Group) -> float:
+        """Fastest wave in the present state of a group, m/s; that of the unstrained one where it is hardly
+        slower, so that steps do not change all the time.
+
+        Raises:
+            PluginFault: the law gives none.
+        """
+        given = group.law.present_wave_speed(self.kinematics(group), group.state)
+        speed = require_number(group.law, "present_wave_speed", given)
+        if not speed >= 0:
+            raise PluginFault(group.law, f"has a wave speed of {speed} m/s; it must not be negative")
+        return speed if speed > STIFFER * group.wave_speed else group.wave_speed
 
     @property
     def nbytes(self) -> int:

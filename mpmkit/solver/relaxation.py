@@ -12,6 +12,7 @@ from ..kernels import domains, nodes, volumes
 from .averager import Averager
 from .node_volumes import node_volumes
 from .particles import Group, Particles
+from .stateful import State, plain_state, restore_plain
 
 WORTH = 0.05
 """Part of the departures of J that is due to go before any goes: so little may as well go at once, and to
@@ -48,6 +49,14 @@ class Relaxation:
         self._treatment = scheme.volumetric
         self._boxes_tell = scheme.shape.particle_domain != "fixed"
         self._radial = radial
+
+    def state(self) -> State:
+        """``due``."""
+        return plain_state(self)
+
+    def restore(self, state: State) -> None:
+        """Take ``due`` back."""
+        restore_plain(self, state)
 
     def relax(self, averager: Averager, rate: float, dt: float) -> None:
         """Go on by a step, at the rate, 1/s, that the treatment asks for.
@@ -86,6 +95,6 @@ def _only(p: Particles, group: Group) -> np.ndarray:
     """Initial volumes of a material, zero for the others."""
     if len(p.groups) == 1:
         return p.initial_volume
-    measure = np.zeros(len(p))
-    measure[group.part] = p.initial_volume[group.part]
-    return measure
+    weights = np.zeros(len(p))
+    weights[group.part] = p.initial_volume[group.part]
+    return weights

@@ -6,8 +6,10 @@ import numpy as np
 
 from ..case.model import Body, Case, Material
 from ..case.sound_speed import SoundSpeedMach
+from ..contracts.law import initial_state
 from ..errors import CaseError
-from ..geometry import Sample, sample
+from ..geometry import Sample, sample, shared_volume
+from ..registry import audit
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
@@ -30,8 +32,8 @@ def make_particles(case: Case) -> Particles:
     bodies = [
         (number, body) for m in materials for number, body in enumerate(case.bodies) if body.material == m
     ]
+    _refuse_overlaps(case)
     samples = [_sample_body(case, number) for number, _ in bodies]
-    _refuse_overlaps(case, bodies, samples)
     counts = [len(found.volume) for found in samples]
 
     lower, _ = case.domain_bounds
@@ -39,7 +41,7 @@ def make_particles(case: Case) -> Particles:
     volume = np.concatenate([found.volume for found in samples])
     half_size = np.concatenate([found.half_size for found in samples])
     n = len(position)
-    rule = case.scheme.shape.particle_domain
+    rule = audit.particle_domain(case.scheme.shape)
     affine = case.space_.dim if case.scheme.velocity.affine else 0
     particles = Particles(
         number=np.arange(n, dtype=np.int64),
@@ -72,7 +74,7 @@ def make_particles(case: Case) -> Particles:
     start = 0
     for material in materials:
         end = start + sum(c for c, (_, body) in zip(counts, bodies, strict=True) if body.material == material)
-        particles.groups.append(_group(case, material, slice(start, end)))
+        particles.groups.append(material_group(case, material, slice(start, end)))
         start = end
     return particles
 
@@ -84,31 +86,44 @@ def tracks_deformation(case: Case) -> bool:
     )
 
 
-def _group(case: Case, material: Material, part: slice) -> Group:
-    law, count = material.constitutive_law, part.stop - part.start
+def material_group(case: Case, material: Material, part: slice) -> Group:
+    """The particles ``part`` of a material, in the state in which a run begins."""
+    count, speed = part.stop - part.start, case.sound_speed(material)
+    law = material.constitutive_law.in_scene(material.density, speed, case.scale)
     return Group(
         law=law,
         equation_of_state=material.equation_of_state,
         density=material.density,
-        sound_speed=case.sound_speed(material),
+        sound_speed=speed,
         mach=material.sound_speed.mach if isinstance(material.sound_speed, SoundSpeedMach) else None,
         part=part,
-        state={
-            name: np.full((count, *variable.shape), variable.initial, dtype=float)
-            for name, variable in law.state.items()
-        },
+        state=initial_state(law, count),
     )
 
 
-def _refuse_overlaps(case: Case, bodies: list[tuple[int, Body]], samples: list[Sample]) -> None:
-    for (number, _), found in zip(bodies, samples, strict=True):
-        for other, body in bodies:
-            inside = 0 if other >= number else int(body.shape.contains(found.position, case.space_).sum())
-            if inside:
+def _refuse_overlaps(case: Case) -> None:
+    """Refuse bodies that share room, by their shapes: what is less than a particle would be weighed twice."""
+    space, spacing = case.space_, [_spacing(case, body) for body in case.bodies]
+    for number, body in enumerate(case.bodies):
+        for other in range(number):
+            shared = shared_volume(
+                body.shape,
+                case.bodies[other].shape,
+                space,
+                np.minimum(spacing[number], spacing[other]),
+                case.domain_bounds,
+            )
+            if shared > 0:
                 raise CaseError(
-                    f"bodies.{number}.shape has {inside} of its particles inside bodies.{other}.shape; "
-                    "bodies may touch but not overlap"
+                    f"bodies.{number}.shape and bodies.{other}.shape overlap: they share {shared:.3g} m³, "
+                    f"{shared / body.shape.volume(space):.2g} of bodies.{number}; bodies may touch but not "
+                    "overlap"
                 )
+
+
+def _spacing(case: Case, body: Body) -> np.ndarray:
+    """Distance of a body's particles, m, (dim,)."""
+    return case.grid.cell_size / np.array(body.particles_along_axes(case.space_.dim), dtype=float)
 
 
 def _initial_velocity(body: Body, position: np.ndarray) -> np.ndarray:
@@ -131,8 +146,10 @@ def _sample_body(case: Case, number: int) -> Sample:
         keep=bounds,
     )
     if len(found.volume) == 0:
+        spacing = " by ".join(f"{s:g}" for s in _spacing(case, body))
         raise CaseError(
-            f"bodies.{number}.shape holds no particle at a cell size of {case.grid.cell_size:g} m; "
+            f"bodies.{number}.shape holds no particle at a cell size of {case.grid.cell_size:g} m: particles "
+            f"are {spacing} m apart, and along each axis the body must be at least half as thick; "
             "it must be larger, or the cells smaller"
         )
     return found

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager
 
 import numpy as np
 
 from ..case.model import Case
+from ..case.plugins import plugins_of
+from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
+from ..registry.blame import blaming_plugins
 from .grid import Grid
 from .guards import Guards, stop
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
+from .rest import put_under_weight
 from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
 from .splitting import OutOfMemory, split
+from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
 """Steps between two looks at the limits of the time step; in as many, no flow changes its speed much."""
+IMPACT_INTERVAL = 5
+"""The same where there is a solid, which an impact stiffens within a dozen steps."""
 
 
 class Simulation:
@@ -37,36 +45,78 @@ class Simulation:
             case: a validated case.
             particles: a state to go on from; the case's bodies in their places unless told.
             fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
+
+        Raises:
+            MpmkitError: this process was forked from one that had used the threads.
         """
+        require_threads()
         self.case = case
         self.fraction = fraction
+        self.time = 0.0
+        self.steps = 0
+        self._plugins = plugins_of(case)
+        with self.blaming():
+            self._set_up(particles)
+
+    def _set_up(self, particles: Particles | None) -> None:
+        case = self.case
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
+        self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
         self.measures = Measures.of(case, self.grid, self.particles)
-        self.time = 0.0
-        self.steps = 0
         self.limits: Limits
         self.time_step: float
         self.limited_by: str
         self.mach_number: float
         """Largest speed over the slowest sound, a few steps ago at most."""
         self.particle_steps = 0
+        self._prepared = 0
+        """The step, by the number of those done before it, for which ``prepare`` has looked last."""
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
-        self._follows_flow = any(group.mach is not None for group in self.particles.groups)
+        fluid = all(group.law.uses_equation_of_state for group in self.particles.groups)
+        self._interval = CONTROL_INTERVAL if fluid else IMPACT_INTERVAL
         self.guards = Guards(self)
         self.choose_time_step()
 
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own, in the order in which it is restored."""
+        return {"particles": self.particles, "operations": self.operations, "guards": self.guards}
+
+    def state(self) -> State:
+        """All that the run depends on from here on, beside the case: it goes on from it to the same bits."""
+        limits_ = np.array(list(self.limits.as_dict().values()))
+        return plain_state(self) | {"limits/": limits_} | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back a state of the same case.
+
+        Raises:
+            KeyError: the state lacks something.
+        """
+        restore_plain(self, state)
+        self.limits = Limits(*map(float, state["limits/"]))
+        restore(self.components, state)
+
+    def blaming(self) -> AbstractContextManager[None]:
+        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
+        return blaming_plugins(self._plugins, lambda: (self.steps, self.time))
+
     def choose_time_step(self) -> None:
-        """Recompute the sound speeds that follow the flow, the limits, and with them the step."""
+        """Recompute the limits, and with them the step."""
+        with self.blaming():
+            self._choose_time_step()
+
+    def _choose_time_step(self) -> None:
         p = self.particles
-        follow_flow(p, self.grid, self.case.gravity_vector, self._first_sound_speeds)
         mass, doubled, square = kinetics(p.mass, p.velocity)
         speed = math.sqrt(square)
         self.mach_number = mach_number(p, speed)
-        self.limits = limits(p.groups, self.grid.cell_size, speed)
+        waves = [(group, p.wave_speed(group)) for group in p.groups]
+        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = math.sqrt(doubled / mass)
@@ -74,32 +124,56 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
-        said = [sentence for group in self.particles.groups for sentence in group.remarks]
+        with self.blaming():
+            said = [sentence for group in self.particles.groups for sentence in group.remarks]
+        if self.starts_under_weight:
+            said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
                     f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
-                    "a modulus that is made of it follows as well"
+                    "an elastic modulus stays as it is"
                 )
         return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
-        """What the user should know of the step that was chosen."""
-        return warnings(self.case.scheme, self.limits, self.time_step)
+        """What the user should know of the materials, and of the step that was chosen."""
+        with self.blaming():
+            of_materials = [
+                sentence
+                for group in self.particles.groups
+                for sentence in group.warnings(self.case.scale, self.case.until)
+            ]
+            return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
-    def advance(self, at_most: float = np.inf) -> float:
-        """One step, no longer than ``at_most`` seconds; returns its length.
+    def prepare(self) -> None:
+        """Every few steps, look at the guards, split, and choose the step; ``advance`` begins with it.
+
+        Whoever wants to know the length of the next step beforehand calls it first: it looks once a step.
 
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.
         """
         self.guards.begin()
-        if self.steps % CONTROL_INTERVAL == 0 and self.steps > 0:
+        if self.steps % self._interval == 0 and self.steps > self._prepared:
+            self._prepared = self.steps
             self.check()
-            changed = self.case.scheme.splitting and self._split()
-            self.choose_time_step()
-            if changed or self._follows_flow:
+            if self.case.scheme.splitting and self._split():
                 self.guards.accept_changes()
+            self._follow_flow()
+            self.choose_time_step()
+
+    def advance(self, at_most: float = np.inf) -> float:
+        """One step, no longer than ``at_most`` seconds; returns its length.
+
+        Raises:
+            GuardStop: the run is beyond saving, see ``guards``, or a plug-in is at fault.
+        """
+        with self.blaming():
+            return self._advance(at_most)
+
+    def _advance(self, at_most: float) -> float:
+        self.prepare()
         try:
             lost = self.operations.begin()
         except Scattered as error:
@@ -114,6 +188,11 @@ class Simulation:
         self.steps += 1
         self.particle_steps += len(self.particles)
         return dt
+
+    def _follow_flow(self) -> None:
+        """Recompute the sound speeds that are to follow the flow."""
+        gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
+        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
 
     def _split(self) -> bool:
         """Split particles whose boxes are too long; whether there were any."""
@@ -130,10 +209,16 @@ class Simulation:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
         return self.operations.mapped_mass
 
+    def require_tables(self) -> None:
+        """Raise PluginFault if the weights of the last step, if there was one, cannot be right."""
+        if self.mapped_mass is not None:
+            self.operations.require_tables()
+
     def sum_of_weights(self) -> np.ndarray:
         """Σ N of every particle, ``(n,)``, of the last step: 1 but for rounding."""
         return np.prod(self.operations.weight.sum(axis=-1), axis=1)
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
-        self.guards.check()
+        with self.blaming():
+            self.guards.check()

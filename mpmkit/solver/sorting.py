@@ -9,14 +9,15 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-import psutil
 
 from ..kernels import sort
 from ..kernels.locate import LOST, STRAYED, locate, wrap
 from ..kernels.scatter import NODE
 from .active_nodes import ActiveNodes
+from .available_memory import available_memory
 from .grid import Grid, Window
 from .particles import Particles
+from .stateful import State, plain_state, restore_plain
 from .tasks import TASKS, cuts
 
 DRIFT = 1
@@ -107,25 +108,15 @@ class Sorting:
         self.sorts += 1
         return None
 
-    def state(self) -> dict[str, np.ndarray]:
+    def state(self) -> State:
         """What the order of the particles, and when it changes, depends on."""
-        return {
-            "low": self._low,
-            "high": self._high,
-            "block_first": self._block_first,
-            "block_cell": self._block_cell,
-            "tasks": self.tasks,
-            "sorts": np.array(self.sorts),
-        }
+        return plain_state(self)
 
-    def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Take up a state, for particles that are in its order."""
-        self._low, self._high = state["low"].copy(), state["high"].copy()
-        self._block_first, self._block_cell = state["block_first"].copy(), state["block_cell"].copy()
-        self.tasks, self.sorts = state["tasks"].copy(), int(state["sorts"])
-        self._verdicts = np.empty((len(self._block_cell), 2), dtype=np.int64)
-        self.window.cover(self._low, self._high)
-        self.active = self._active_nodes()
+    def restore(self, state: State) -> None:
+        """Take back a state, for particles that are in its order and a window that lies over them."""
+        restore_plain(self, state)
+        if self.sorts:
+            self.active = self._active_nodes()
 
     def _share_out(self, first_of_colour: np.ndarray) -> None:
         """Cut the blocks of every colour into tasks of about equal load, all groups together."""
@@ -144,6 +135,6 @@ class Sorting:
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
         low, high = self.window.touchable(self._low, self._high)
-        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > psutil.virtual_memory().available:
+        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > available_memory():
             away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)
             raise Scattered(int(np.argmax(away)))

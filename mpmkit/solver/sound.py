@@ -7,36 +7,88 @@ import math
 import numpy as np
 
 from .grid import Grid
-from .particles import Particles
+from .particles import Group, Particles
 
 SLOWEST = 0.1
 """Part of its first value below which a sound speed that follows the flow does not get, as in a scene without
 gravity that comes to rest."""
+CHANGE = 0.05
+"""Largest change of ln c in the time in which sound crosses the material; a slump at Mach 0.1 needs half of
+it. J changes with c while the particles stay where they are: slowly, so that they can move there."""
+ITERATIONS = 20
+"""Steps of Newton's method, of which two or three suffice."""
+ROUNDING = 1e-14
 
 
-def follow_flow(particles: Particles, grid: Grid, gravity: np.ndarray, first: list[float | None]) -> None:
-    """Set c = √(2 e) / mach of every material that is to follow the flow; ``first`` holds c at the start.
+def follow_flow(
+    particles: Particles, grid: Grid, gravity: np.ndarray, first: list[float | None], elapsed: float
+) -> None:
+    """Draw c of every material that is to follow the flow towards √(2 e) / mach.
 
-    c changes as fast as the material falls, slowly against the sound, so that J follows it at the pressure
-    that the flow needs.
+    c changes slowly against the sound, and at unchanged energy, see ``_change_sound``.
+
+    Args:
+        particles: their sound speeds, volume ratios and pressures are changed.
+        grid: tells which axes are periodic.
+        gravity: ``(dim,)``, m/s².
+        first: c of each material at the start, m/s.
+        elapsed: time since the last change, s.
     """
     if all(group.mach is None for group in particles.groups):
         return
     fastest = math.sqrt(2 * largest_energy(particles, grid, gravity))
+    length = float(np.ptp(particles.position, axis=0).max())
     for group, at_start in zip(particles.groups, first, strict=True):
         if group.mach is not None and at_start is not None:
-            group.sound_speed = max(fastest / group.mach, SLOWEST * at_start)
+            speed = group.sound_speed
+            assert speed is not None
+            wanted = max(fastest / group.mach, SLOWEST * at_start)
+            most = math.exp(CHANGE * elapsed * speed / max(length, grid.cell_size))
+            _change_sound(particles, group, min(max(wanted, speed / most), speed * most))
+
+
+def _change_sound(p: Particles, group: Group, speed: float) -> None:
+    """Give a material another c, and each of its particles the J at which it stores as much energy as before.
+
+    A change at the same J would multiply the stored energy by the square of the change, one at the same
+    pressure by its inverse: a wave that finds c high in compression and low at rest would gain in every
+    swing. At the same energy the pressure changes as c does. J is found on its own side of 1 by Newton's
+    method on √e, which is all but linear in J.
+    """
+    part, ratio = group.part, p.volume_ratio[group.part]
+    wanted = np.sqrt(group.compressive_energy(ratio))
+    assert group.sound_speed is not None
+    found = 1 + (ratio - 1) * (group.sound_speed / speed)
+    group.sound_speed = speed
+    for _ in range(ITERATIONS):
+        root = np.sqrt(group.compressive_energy(found))
+        slope = -group.pressure(found) / (2 * np.where(root > 0, root, 1.0))
+        off = np.where((root > 0) & (slope != 0), (wanted - root) / np.where(slope == 0, 1.0, slope), 0.0)
+        found = np.maximum(found + off, found / 2)
+        if not np.abs(off).max() > ROUNDING:
+            break
+    p.volume_ratio[part] = found
+    p.volume[part] = found * p.initial_volume[part]
+    p.pressure[part] = group.pressure(found)
 
 
 def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> float:
-    """Largest energy of a particle, of its speed and of the height of its box above the lowest one, J/kg.
+    """Largest energy of a particle, J/kg: of its speed, of what it has stored, and of the height of its box
+    above the lowest one.
 
-    Along a periodic axis the work of gravity has no potential.
+    What is stored counts as it may move again: an impact on a wall leaves the energy as it is. Along a
+    periodic axis the work of gravity has no potential.
     """
     downwards = np.where(grid.periodic, 0.0, gravity)
     potential, of_box = -particles.position @ downwards, particles.box @ np.abs(downwards)
-    kinetic = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
-    return float((potential + of_box + kinetic).max() - (potential - of_box).min())
+    moving = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
+    for group in particles.groups:
+        part = group.part
+        stored = group.law.strain_energy(particles.kinematics(group), group.state, particles.stress[part])
+        if group.law.uses_equation_of_state:
+            stored = stored + group.compressive_energy(particles.volume_ratio[part])
+        moving[part] += stored / group.density
+    return float((potential + of_box + moving).max() - (potential - of_box).min())
 
 
 def mach_number(particles: Particles, largest_speed: float) -> float:

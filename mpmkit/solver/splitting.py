@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import psutil
 
+from .available_memory import available_memory
 from .grid import Grid
 from .particles import Particles
 
@@ -78,6 +78,6 @@ def _halve(p: Particles, which: np.ndarray, axis: int, room: np.ndarray, ring: b
 
 
 def _require_memory(p: Particles, which: np.ndarray) -> None:
-    """Refuse to add particles that do not fit, copies while they are made included."""
-    if 3 * p.nbytes / len(p) * (len(p) + which.sum()) > psutil.virtual_memory().available:
+    """Refuse to add particles that do not fit, copies while they are made, or saved, included."""
+    if 3 * p.nbytes / len(p) * (len(p) + which.sum()) > available_memory():
         raise OutOfMemory(int(np.argmax(p.box.max(axis=1))))

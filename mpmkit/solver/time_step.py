@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ..case.model import Scheme
+from ..contracts import UpdateOrder, VelocityUpdate
 from ..errors import PluginFault
+from ..registry.audit import require_number
 from .particles import Group
 
 VISCOUS_NUMBER = 0.375
 """Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
+
+FROM_REST = 0.05
+"""Part of the scene's own rate that its flow comes to from rest until the next look at the limits."""
 
 
 @dataclass(frozen=True)
@@ -25,25 +31,29 @@ class Limits:
         return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
 
 
-def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limits:
+def limits(
+    materials: Iterable[tuple[Group, float]], cell_size: float, largest_speed: float, rate: float
+) -> Limits:
     """Critical steps of a scene.
 
-    acoustic: dx / c, with the law's fastest wave (eq. 5 of Ferreira et al.);
+    acoustic: dx / c, with the law's fastest wave in its present state (eq. 5 of Ferreira et al.);
     viscous: 0.375 rho dx² / mu, with the law's largest viscosity;
     advective: dx / |v|.
 
     Args:
-        groups: the materials.
+        materials: each with the speed of its fastest wave, m/s.
         cell_size: dx, m.
         largest_speed: largest particle speed, m/s.
+        rate: √e/h of the scene, 1/s, see ``contracts.scale``.
     """
     # No strain rate that the grid can resolve exceeds a jump of the largest speed over one cell; a scene
-    # at rest will move, so that at least 1 /s is allowed for.
-    largest_rate = max(2 * largest_speed / cell_size, 1.0)
+    # at rest will move, so that a part of the rate at which it could fall is allowed for.
+    largest_rate = max(2 * largest_speed / cell_size, FROM_REST * rate)
     acoustic = viscous = math.inf
-    for group in groups:
-        acoustic = min(acoustic, _quotient(cell_size, group.wave_speed))
-        viscosity = group.law.largest_viscosity(largest_rate)
+    for group, wave_speed in materials:
+        acoustic = min(acoustic, _quotient(cell_size, wave_speed))
+        given = group.law.largest_viscosity(largest_rate)
+        viscosity = require_number(group.law, "largest_viscosity", given)
         if not viscosity >= 0:
             raise PluginFault(
                 group.law, f"has a largest viscosity of {viscosity} Pa s; it must not be negative"
@@ -53,12 +63,24 @@ def limits(groups: list[Group], cell_size: float, largest_speed: float) -> Limit
 
 
 def borne_by(scheme: Scheme) -> dict[str, float]:
-    """Part of each limit, by name, at which the schemes are still stable."""
+    """Part of each limit, by name, at which the schemes are still stable.
+
+    Raises:
+        PluginFault: one of them says what is no part of anything.
+    """
+    order, velocity = scheme.order, scheme.velocity
     return {
-        "acoustic": min(scheme.order.acoustic_fraction, scheme.velocity.acoustic_fraction),
-        "viscous": scheme.order.viscous_fraction,
+        "acoustic": min(_fraction(order, "acoustic_fraction"), _fraction(velocity, "acoustic_fraction")),
+        "viscous": _fraction(order, "viscous_fraction"),
         "advective": 1.0,
     }
+
+
+def _fraction(plugin: UpdateOrder | VelocityUpdate, name: str) -> float:
+    fraction = require_number(plugin, name, getattr(plugin, name))
+    if not 0 < fraction < math.inf:
+        raise PluginFault(plugin, f"has {fraction:g} as {name}; it must be above 0, and finite")
+    return fraction
 
 
 def choose_step(scheme: Scheme, found: Limits, fraction: float | None = None) -> tuple[float, str]:

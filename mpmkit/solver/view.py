@@ -47,5 +47,8 @@ class SceneView(Protocol):
     def mapped_mass(self) -> float | None:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
 
+    def require_tables(self) -> None:
+        """Raise PluginFault if the weights of the last step cannot be right."""
+
     def sum_of_weights(self) -> np.ndarray:
         """Σ N of every particle, ``(n,)``, of the last step."""

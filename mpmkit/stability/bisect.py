@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ..case.model import Case
-from ..errors import MpmkitError
+from ..errors import MpmkitError, PluginStop
 from ..solver.simulation import Simulation
 from ..solver.time_step import borne_by
 from .judge import Criteria
@@ -41,6 +41,7 @@ def critical_fraction(case: Case, criteria: Criteria | None = None, largest: flo
 
     Raises:
         CaseError: the case cannot be run.
+        PluginStop: a plug-in is at fault, and the run has not diverged.
     """
     criteria = criteria or Criteria()
     simulation = Simulation(case, fraction=FINE)
@@ -54,6 +55,8 @@ def critical_fraction(case: Case, criteria: Criteria | None = None, largest: flo
     while high / low > CLOSE:
         try:
             found = criteria.broken(case, trace(case, tried), fine)
+        except PluginStop:
+            raise
         except MpmkitError:
             found = "guard"
         if found is None:

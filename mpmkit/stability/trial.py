@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.model import Case
-from ..errors import GuardStop
+from ..errors import GuardStop, PluginStop
 from ..solver.grid import Grid
 from ..solver.simulation import Simulation
 
@@ -40,17 +40,36 @@ def trace(case: Case, fraction: float) -> Trace:
     rows, stopped_by = [], None
     with np.errstate(all="ignore"):
         try:
-            for time in np.linspace(0.0, case.until, ROWS):
-                while simulation.time + simulation.time_step / 2 <= time:
-                    simulation.advance()
-                rows.append(_row(simulation, time - simulation.time))
-            simulation.check()
+            with simulation.blaming():
+                for time in np.linspace(0.0, case.until, ROWS):
+                    while simulation.time + simulation.time_step / 2 <= time:
+                        simulation.advance()
+                    rows.append(_row(simulation, time - simulation.time))
+                simulation.check()
+        except PluginStop:
+            stopped_by = _diverged(simulation)
+            if stopped_by is None:
+                raise
         except GuardStop as stop:
             stopped_by = stop.guard
     p = simulation.particles
     time, energy, kinetic, momentum, position = (np.array(column) for column in zip(*rows, strict=True))
     position = _unwrapped(position, simulation.grid)
     return Trace(time, energy, kinetic, momentum, position, p.mass[np.argsort(p.number)], stopped_by)
+
+
+def _diverged(simulation: Simulation) -> str | None:
+    """The guard that stops a run in which a plug-in failed; None if nothing but the plug-in is wrong.
+
+    A law need not bear what the steps have made of its particles.
+    """
+    try:
+        simulation.check()
+    except PluginStop:
+        return None
+    except GuardStop as stop:
+        return stop.guard
+    return None
 
 
 def _unwrapped(position: np.ndarray, grid: Grid) -> np.ndarray:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from ..output.atomic import replacing
 from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
 from .chart import Chart
 from .quantities import COSTS
 
+MANY_DECADES, FEW_DECADES = 1e3, 10.0
+"""Largest over least value of an axis, above which ticks stand at powers of ten, or at 1, 2 and 5 of each."""
 LEAST_ERROR = 1e-6
 """Errors below it are drawn there: what is exact has no place on a logarithmic axis."""
 
@@ -23,12 +26,6 @@ def draw(chart: Chart, title: str, path: Path) -> None:
         axes = figure.add_subplot()
         axes.set_xscale("log")
         axes.set_yscale("log")
-        for axis in (
-            axes.xaxis,
-            axes.yaxis,
-        ):  # powers of ten as numbers: the style takes no text for a formula
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.4)))
         front = chart.front
         others = [point for point in chart.points if point not in front]
         for points, colour, size in ((others, GREY, 5), (front, BLUE, 8)):
@@ -60,12 +57,26 @@ def draw(chart: Chart, title: str, path: Path) -> None:
                 color=BLUE,
                 fontweight="bold",
             )
+        _number_ticks(axes)
         units, text = COSTS[chart.cost]
         axes.set_xlabel(f"{text} ({units})" if units != "1" else text)
-        axes.set_ylabel(f"error of {chart.variable.replace('_', ' ')}, relative to {chart.against}")
+        axes.set_ylabel(f"error of {chart.variable.replace('_', ' ')},\nrelative to {chart.against}")
         axes.set_title(f"{title}: accuracy against cost", loc="left")
         names = "\n".join(f"{number}  {point.title}" for number, point in enumerate(front, start=1))
         figure.text(1.01, 0.97, names, va="top", ha="left", fontsize=9, color=BLUE)
         axes.legend(loc="best")
         with replacing(path) as partial:
             figure.savefig(partial, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.12)
+
+
+def _number_ticks(axes: Axes) -> None:
+    """Numbers at the ticks that are all different: powers of ten over decades, and more of them over less."""
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if high > MANY_DECADES * low:
+            axis.set_major_locator(LogLocator())
+        elif high > FEW_DECADES * low:
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        else:
+            axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.6g}"))
+        axis.set_minor_formatter(NullFormatter())

@@ -27,7 +27,10 @@ def cluster(address: str) -> Iterator[Executor]:
     try:
         from distributed import Client
     except ImportError:
-        raise CaseError(f"--scheduler {address} needs distributed: pip install 'mpmkit[cluster]'") from None
+        raise CaseError(
+            f"--scheduler {address} needs distributed: pip install distributed, or pip install '.[cluster]' "
+            "in a clone of mpmkit"
+        ) from None
     try:
         # No default, or xarray would ask it for arrays, even one that never found its scheduler.
         client = Client(address, timeout=PATIENCE, set_as_default=False)

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import xarray
 
+from ..case.model import Case
 from ..version import __version__
+from .labels import unit_of
 from .members import Member, dimensions, shown
 from .model import Study
 from .quantities import COSTS, FIGURES
@@ -52,7 +54,10 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
         history = store.history(member)
         if history is not None:
             _add_history(fields, history, (*names, "time"), place, time)
-    coordinates: dict[str, Any] = {name: [shown(label) for label in labels] for name, labels in axes.items()}
+    coordinates: dict[str, Any] = {
+        name: (name, [shown(label) for label in labels], _described(name, members[0].case))
+        for name, labels in axes.items()
+    }
     dataset = xarray.Dataset(fields, coordinates | {"time": ("time", time, {"units": "s"})})
     dataset.attrs = {
         "title": study.name,
@@ -75,6 +80,12 @@ def _add_history(fields: dict, path, names: tuple, place: tuple, time: np.ndarra
             fields[str(name)] = (names, np.full((*shape, len(time)), np.nan), dict(series.attrs))
         values = np.interp(time, history.time.values, series.values)
         fields[str(name)][1][place] = np.where(time <= end * (1 + 1e-9), values, np.nan)
+
+
+def _described(dimension: str, case: Case) -> dict[str, str]:
+    """Attributes of a dimension: the unit of the quantity that it varies, if it varies one."""
+    unit = unit_of(case, dimension)
+    return {} if unit is None else {"units": unit}
 
 
 def _number(value: Any) -> float:

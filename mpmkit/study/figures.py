@@ -1,20 +1,22 @@
-"""Figures of a study: histories over each other, and their differences from the first."""
+"""Figures of a study: histories over each other, and their differences from the first that finished."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from ..output.atomic import replacing
-from ..report.style import COLOUR_MAP, DPI, figure_style
+from ..report.style import CATEGORIES, DPI, figure_style
+from .labels import title_of
 
 SHOWN = {
     "spread_diameter": ("spread diameter (mm)", 1e3),
+    "slump": ("slump (mm)", 1e3),
     "height": ("largest height (mm)", 1e3),
     "kinetic_energy": ("kinetic energy (J)", 1.0),
     "max_speed": ("largest speed (m/s)", 1.0),
@@ -23,6 +25,10 @@ SHOWN = {
 DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
 MOST_NAMED = 24
 """Members that a legend can name."""
+MOST_BESIDE, LONGEST_BESIDE = 12, 48
+"""Members, and letters of a name, that the legend has room for in a place of the grid that is left."""
+WIDTH_OF_LEGEND = 120
+"""Letters side by side in a legend below."""
 
 
 def draw(dataset: xarray.Dataset, directory: Path) -> list[Path]:
@@ -45,43 +51,64 @@ def members(dataset: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
     dimensions = dataset.fate.dims
     for place in np.ndindex(dataset.fate.shape):
         member = dataset.isel(dict(zip(dimensions, place, strict=True)))
-        title = ", ".join(str(member[name].item()) for name in dimensions)
-        yield title, member
+        yield title_of(member, tuple(map(str, dimensions))), member
 
 
 def _figure(dataset: xarray.Dataset, differences: bool) -> Figure | None:
     names = [name for name in SHOWN if name in dataset and bool(dataset[name].notnull().any())]
     drawn = [
-        (title, member)
-        for title, member in members(dataset)
+        (title, member, style)
+        for (title, member), style in zip(members(dataset), _styles(dataset.fate.shape), strict=True)
         if any(bool(member[name].notnull().any()) for name in names)
     ]
-    if not names or len(drawn) < 1 + differences:
+    of, base = "", None
+    if differences:
+        base = next((item for item in drawn if str(item[1].fate.item()) == "finished"), None)
+        if base is None:
+            return None
+        drawn.remove(base)
+        of = f", less those of {base[0]}"
+    if not names or not drawn:
         return None
     rows = (len(names) + 1) // 2
     figure = Figure(figsize=(10.5, 3.4 * rows + 0.6), layout="constrained")
     grid = figure.subplots(rows, 2, squeeze=False)
-    colours = colormaps[COLOUR_MAP](np.linspace(0, 0.92, max(len(drawn), 2)))
-    first = drawn[0][1]
     for axes, name in zip(grid.flat, names, strict=False):
         label, scale = SHOWN[name]
-        for number, (title, member) in enumerate(drawn[differences:], start=int(differences)):
-            values = (member[name] - first[name] if differences else member[name]) * scale
-            axes.plot(
-                dataset.time,
-                values,
-                color=colours[number],
-                linestyle=DASHES[number % len(DASHES)],
-                label=title,
-            )
+        for title, member, (colour, dashes) in drawn:
+            values = (member[name] - base[1][name] if base else member[name]) * scale
+            axes.plot(dataset.time, values, color=colour, linestyle=dashes, label=title)
         axes.set_xlabel("time (s)")
         axes.set_ylabel(f"difference in {label}" if differences else label)
         axes.margins(x=0)
-    for axes in list(grid.flat)[len(names) :]:
-        axes.set_visible(False)
-    of = f", less those of {drawn[0][0]}" if differences else ""
+    empty = list(grid.flat)[len(names) :]
+    for axes in empty:
+        axes.set_axis_off()
     figure.suptitle(f"{dataset.attrs['title']}: histories{of}", x=0.01, ha="left", fontweight="bold")
     handles, labels = grid.flat[0].get_legend_handles_labels()
     if len(labels) <= MOST_NAMED:
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
+        if empty and len(labels) <= MOST_BESIDE and max(map(len, labels)) <= LONGEST_BESIDE:
+            empty[0].legend(handles, labels, loc="center left")
+        else:
+            columns = max(1, min(4, len(labels), WIDTH_OF_LEGEND // (max(map(len, labels)) + 6)))
+            figure.legend(handles, labels, loc="outside lower center", ncols=columns)
     return figure
+
+
+def _styles(shape: tuple[int, ...]) -> list[tuple[str, Any]]:
+    """Colour and dashes of each member: colours that are told apart, and no more of them than there are.
+
+    Of more members than colours, one dimension of the grid goes by colour and the others by dashes.
+    """
+    colours, count = len(CATEGORIES), int(np.prod(shape))
+    # Few members have dashes of their own as well, so that of two curves that coincide both are seen.
+    by_number = [(n % colours, n if count <= colours else n // colours) for n in range(count)]
+    fitting = [axis for axis, size in enumerate(shape) if 1 < size <= colours]
+    if count > colours and fitting:
+        axis = max(fitting, key=lambda axis: shape[axis])
+        others = [size for number, size in enumerate(shape) if number != axis]
+        if int(np.prod(others)) <= len(DASHES):
+            places = list(np.ndindex(shape))
+            rest = list(np.ndindex(*others))
+            by_number = [(p[axis], rest.index(p[:axis] + p[axis + 1 :])) for p in places]
+    return [(CATEGORIES[colour], DASHES[dashes % len(DASHES)]) for colour, dashes in by_number]

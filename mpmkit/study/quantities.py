@@ -9,6 +9,8 @@ FIGURES = {
     "final_spread": ("m", "spread diameter at the end"),
     "final_slump": ("m", "slump at the end"),
     "final_height": ("m", "largest height at the end"),
+    "final_spread_rate": ("m/s", "rate at which the spread diameter grows at the end"),
+    "at_rest_since": ("s", "since when the material has been at rest"),
     "simulated_time": ("s", "simulated time"),
     "particles": ("1", "particles at the end"),
 }

@@ -10,6 +10,7 @@ import xarray
 COLUMNS = (
     ("t500", "T500, s", 1.0, ".3f"),
     ("final_spread", "spread, mm", 1e3, ".1f"),
+    ("final_slump", "slump, mm", 1e3, ".1f"),
     ("final_height", "height, mm", 1e3, ".1f"),
     ("particles", "particles", 1.0, ",.0f"),
     ("steps", "steps", 1.0, ",.0f"),

@@ -7,17 +7,38 @@
 Under pytest each property is then a test of its own; without it, ``for check in law_checks(law): check()``.
 """
 
-from .checks import Check, law_checks, order_checks, shape_checks
-from .pytest_tests import law_tests, order_tests, shape_tests
+from .checks import (
+    Check,
+    equation_of_state_checks,
+    law_checks,
+    order_checks,
+    shape_checks,
+    velocity_checks,
+    volumetric_checks,
+)
+from .pytest_tests import (
+    equation_of_state_tests,
+    law_tests,
+    order_tests,
+    shape_tests,
+    velocity_tests,
+    volumetric_tests,
+)
 from .violation import Violation
 
 __all__ = [
     "Check",
     "Violation",
+    "equation_of_state_checks",
+    "equation_of_state_tests",
     "law_checks",
     "law_tests",
     "order_checks",
     "order_tests",
     "shape_checks",
     "shape_tests",
+    "velocity_checks",
+    "velocity_tests",
+    "volumetric_checks",
+    "volumetric_tests",
 ]

@@ -7,9 +7,18 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ..contracts import ConstitutiveLaw, Operations, Plugin, ShapeFunction, UpdateOrder, VelocityUpdate
-from ..errors import GuardStop
-from . import elastic, flight, law_promises, laws, radial, shapes
+from ..contracts import (
+    ConstitutiveLaw,
+    EquationOfState,
+    Operations,
+    Plugin,
+    ShapeFunction,
+    UpdateOrder,
+    VelocityUpdate,
+    VolumetricTreatment,
+)
+from ..errors import GuardStop, PluginFault
+from . import elastic, equations_of_state, flight, law_promises, laws, radial, shapes, volumetric
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
 from .scenes import SPACES
@@ -26,7 +35,7 @@ ON_LAWS = (
     laws.batch_order,
     laws.swelling,
     law_promises.declared_state,
-    law_promises.leaves_the_motion_alone,
+    law_promises.leaves_the_kinematics_alone,
     law_promises.wave_speed,
     law_promises.largest_viscosity,
     law_promises.remarks,
@@ -50,6 +59,16 @@ ON_SHAPES = (
     radial.far_from_the_axis,
 )
 ON_ORDERS = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.energy)
+ON_VELOCITIES = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.no_energy_from_nowhere)
+ON_TREATMENTS = (volumetric.constant_field, volumetric.power, volumetric.relaxation_rate)
+ON_EQUATIONS_OF_STATE = (
+    equations_of_state.arrays,
+    equations_of_state.natural_state,
+    equations_of_state.resists_compression,
+    equations_of_state.sound_speed,
+    equations_of_state.energy_gives_the_pressure,
+    equations_of_state.batch_order,
+)
 
 
 @dataclass(frozen=True)
@@ -65,8 +84,8 @@ class Check:
         __tracebackhide__ = True  # pytest shows the sentence and not our code
         try:
             self.run()
-        except (Violation, GuardStop) as fault:
-            raise Violation(f"{self.kind} '{self.plugin.name}': {fault}") from None
+        except (Violation, GuardStop, PluginFault) as fault:
+            raise Violation(f"{self.kind.replace('_', ' ')} '{self.plugin.name}': {fault}") from None
 
 
 def law_checks(
@@ -85,27 +104,64 @@ def law_checks(
         chosen = (laws.flow_curve, *chosen)
     if subject.hyperelastic:
         chosen += ON_HYPERELASTIC_LAWS
-    return _of("law", law, [(check.__name__, partial(check, subject)) for check in chosen])
+    return _of("law", law, _in_place_first(law_promises.writes_in_place, chosen, subject))
 
 
 def shape_checks(shape: ShapeFunction) -> list[Check]:
     """What every shape function must be."""
     chosen = (*ON_SHAPES, shapes.barely_touched_nodes) if shape.smooth else ON_SHAPES
-    return _of("shape", shape, [(check.__name__, partial(check, shape)) for check in chosen])
+    return _of("shape", shape, _in_place_first(shapes.writes_in_place, chosen, shape))
 
 
 def order_checks(order: UpdateOrder) -> list[Check]:
     """What every update order must do, in each space, with the default shape function and undamped FLIP."""
     scheme = {"order": order, "velocity": _Undamped()}
+    return _of("order", order, _in_each_space(ON_ORDERS, scheme))
+
+
+def velocity_checks(velocity: VelocityUpdate) -> list[Check]:
+    """What every velocity update must do, in each space, with the default shape function and order."""
+    scheme = {"velocity": velocity}
+    fraction = ("acoustic_fraction", partial(flight.fraction, SPACES[0], scheme))
+    return _of("velocity", velocity, [fraction, *_in_each_space(ON_VELOCITIES, scheme)])
+
+
+def volumetric_checks(treatment: VolumetricTreatment) -> list[Check]:
+    """What every volumetric treatment must be, in each space, with the default schemes."""
+    return _of("volumetric", treatment, _in_each_space(ON_TREATMENTS, treatment))
+
+
+def equation_of_state_checks(state: EquationOfState) -> list[Check]:
+    """What every equation of state must be."""
     return _of(
-        "order",
-        order,
-        [
-            (f"{check.__name__} {space}", partial(check, space, scheme))
-            for check in ON_ORDERS
-            for space in SPACES
-        ],
+        "equation_of_state",
+        state,
+        [(check.__name__, partial(check, state)) for check in ON_EQUATIONS_OF_STATE],
     )
+
+
+def _in_each_space(
+    checks: Iterable[Callable[[str, Any], None]], subject: Any
+) -> list[tuple[str, Callable[[], Any]]]:
+    return [
+        (f"{check.__name__} {space}", partial(check, space, subject)) for check in checks for space in SPACES
+    ]
+
+
+def _in_place_first(
+    in_place: Callable[[Any], None], checks: Iterable[Callable[[Any], None]], subject: Any
+) -> list[tuple[str, Callable[[], Any]]]:
+    """Each check after the one that sees whether anything is written: its sentence names the cause."""
+
+    def run(check: Callable[[Any], None]) -> None:
+        __tracebackhide__ = True
+        in_place(subject)
+        check(subject)
+
+    return [
+        ("writes_in_place", partial(in_place, subject)),
+        *((check.__name__, partial(run, check)) for check in checks),
+    ]
 
 
 def _of(kind: str, plugin: Plugin, runs: Iterable[tuple[str, Callable[[], None]]]) -> list[Check]:
@@ -121,7 +177,7 @@ class _Undamped(VelocityUpdate):
 
     name = "undamped"
     citation = "Brackbill & Ruppel, J. Comput. Phys. 65 (1986) 314-343"
-    api_version = 1
+    api_version = 2
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=1.0)
+        ops.move_particles(dt, flip=1.0)

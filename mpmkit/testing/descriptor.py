@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
+
 from ..contracts import Plugin
+from ..contracts.version1 import deprecation
 from ..registry import check, installed
 from .violation import Violation, require
 
@@ -13,6 +16,9 @@ def descriptor(kind: str, plugin: Plugin) -> None:
         check(type(plugin), kind)
     except (TypeError, ValueError) as error:
         raise Violation(str(error)) from None
+    old = deprecation(plugin)
+    if old is not None:
+        warnings.warn(old, DeprecationWarning, stacklevel=2)
     written = plugin.model_dump(mode="json")
     again = type(plugin).model_validate(written)
     require(again == plugin, f"written to a case file and read again, it became {again!r}, not {plugin!r}")
@@ -23,8 +29,7 @@ def registered(kind: str, plugin: Plugin) -> None:
     registry = installed()
     entry = registry.plugins[kind].get(plugin.name)
     if entry is None:
-        reasons = [str(problem) for problem in registry.problems if problem.concerns(kind, plugin.name)]
-        why = "; ".join(reasons) or (
+        why = "; ".join(registry.why_not(kind, plugin.name)) or (
             "no entry point of the group 'mpmkit' leads to it; install its distribution, again if its entry "
             "points have changed"
         )

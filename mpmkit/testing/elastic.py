@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..contracts import Motion
+from ..contracts import Kinematics
+from ..contracts.tensors import from_voigt
 from .law_subject import LawSubject
-from .specimens import plane, random_rotations, tensor
+from .specimens import plane, random_rotations
 from .violation import require_close
 
 
@@ -15,24 +16,24 @@ def deformations(n: int, size: float, seed: int = 3) -> np.ndarray:
     return np.eye(3) + size * np.random.default_rng(seed).uniform(-1, 1, (n, 3, 3))
 
 
-def motion(subject: LawSubject, F: np.ndarray) -> Motion:
+def kinematics(subject: LawSubject, F: np.ndarray) -> Kinematics:
     """At rest in a deformed state."""
     F = np.ascontiguousarray(F)
-    return Motion(np.zeros_like(F), np.linalg.det(F), np.zeros(len(F)), subject.density, F)
+    return Kinematics(np.zeros_like(F), np.linalg.det(F), np.zeros(len(F)), subject.density, F)
 
 
 def energy(subject: LawSubject, F: np.ndarray) -> np.ndarray:
     """W, J/m³ of initial volume."""
     return np.broadcast_to(
-        subject.law.strain_energy(motion(subject, F), {}, np.full((len(F), 6), np.nan)), len(F)
+        subject.law.strain_energy(kinematics(subject, F), {}, np.full((len(F), 6), np.nan)), len(F)
     )
 
 
 def stress(subject: LawSubject, F: np.ndarray) -> np.ndarray:
     """sigma, Pa, ``(n, 3, 3)``."""
     voigt = np.full((len(F), 6), np.nan)
-    subject.law.update_stress(motion(subject, F), {}, 1e-3, voigt)
-    return tensor(voigt)
+    subject.law.update_stress(kinematics(subject, F), {}, 1e-3, voigt)
+    return from_voigt(voigt)
 
 
 def energy_gives_the_stress(subject: LawSubject) -> None:

@@ -91,6 +91,40 @@ def uniform_motion(space: str, scheme: Scheme) -> None:
     )
 
 
+def fraction(space: str, scheme: Scheme) -> None:
+    """The part of the acoustic limit that a velocity update says it bears is above 0, and 1 at most."""
+    found = scheme["velocity"].acoustic_fraction
+    is_number = isinstance(found, int | float) and not isinstance(found, bool)
+    require(
+        is_number and 0 < found <= 1,
+        f"its acoustic_fraction is {found!r}; it must be a number above 0 and at most 1",
+    )
+
+
+def no_energy_from_nowhere(space: str, scheme: Scheme) -> None:
+    """A block that swings never has more energy than at first; what is lost is damped.
+
+    But for a few percent, by which what the particles hold differs from what the nodes see.
+    """
+    lower, upper, domain = block(space, size=8)
+    simulation = simulate(space, scheme, [(lower, upper, RUBBER, None)], domain, fraction=0.2)
+    p = simulation.particles
+    height = p.position[:, -1]
+    p.velocity[:, -1] = -0.5 * np.sin(np.pi * (height - height.mean()) / (8 * DX))
+    simulation.choose_time_step()
+    total = []
+    for _ in range(60):
+        measured = simulation.measures(p)
+        total.append(float(measured["kinetic_energy"] + measured["strain_energy"]))
+        simulation.advance()
+    most = max(total) / total[0]
+    require(
+        most <= 1.07,
+        f"the energy of a block that swings comes to {most:.3g} of that at the start, in step "
+        f"{int(np.argmax(total))} of 60; at most 1.07 is expected",
+    )
+
+
 def energy(space: str, scheme: Scheme) -> None:
     """A block that swings stores what its motion loses, and gets it back: no energy is made.
 

@@ -4,9 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contracts.scale import Scale
 from .law_subject import LawSubject
 from .specimens import plane, random_gradients, simple_shear
 from .violation import Violation, require, require_all, require_same
+
+
+def writes_in_place(subject: LawSubject) -> None:
+    """The law writes into the arrays that it is given. Without that, nothing else of it can be seen."""
+    specimens, L = subject.specimens(4), random_gradients(4)
+    specimens.voigt[:] = np.linspace(1.0, 2.0, 24).reshape(4, 6)
+    stress, state = specimens.voigt.copy(), dict(specimens.state)
+    returned = subject.law.update_stress(specimens.kinematics(L), specimens.state, 1e-3, specimens.voigt)
+    require(
+        returned is None,
+        f"its update_stress returned a {type(returned).__name__}; it must write into the array 'stress', "
+        "as stress[:] = … does, and return nothing",
+    )
+    for name, array in state.items():
+        require(
+            specimens.state.get(name) is array,
+            f"its update_stress replaced the array of its state '{name}'; it must write into the one there, "
+            f"as state['{name}'][:] = … does",
+        )
+    require(
+        not np.array_equal(specimens.voigt, stress),
+        "its update_stress left the array 'stress' as it was; it must write into it, as stress[:] = … does "
+        "(stress = … only makes another array of that name)",
+    )
 
 
 def declared_state(subject: LawSubject) -> None:
@@ -43,18 +68,20 @@ def declared_state(subject: LawSubject) -> None:
         require_same(elsewhere.state[name], array[order], lambda *at, n=name: f"state '{n}' {same}")
 
 
-def leaves_the_motion_alone(subject: LawSubject) -> None:
+def leaves_the_kinematics_alone(subject: LawSubject) -> None:
     """The law reads the motion of the particles, and writes its stress and state alone."""
     specimens = subject.specimens(10)
     L = random_gradients(10)
     specimens.drive(L, 1e-3)
-    motion = specimens.motion(L)
+    kinematics = specimens.kinematics(L)
     names = ("velocity_gradient", "volume_ratio", "pressure", "deformation_gradient")
-    arrays = {name: array for name in names if (array := getattr(motion, name)) is not None}
+    arrays = {name: array for name in names if (array := getattr(kinematics, name)) is not None}
     before = {name: array.copy() for name, array in arrays.items()}
-    subject.law.update_stress(motion, specimens.state, 1e-3, specimens.voigt)
+    subject.law.update_stress(kinematics, specimens.state, 1e-3, specimens.voigt)
     for name, array in arrays.items():
-        require_same(array, before[name], lambda *at, name=name: f"motion.{name}, which it must not change,")
+        require_same(
+            array, before[name], lambda *at, name=name: f"kinematics.{name}, which it must not change,"
+        )
 
 
 def wave_speed(subject: LawSubject) -> None:
@@ -108,7 +135,13 @@ def largest_viscosity(subject: LawSubject) -> None:
 
 
 def remarks(subject: LawSubject) -> None:
-    """Sentences that name the law, without a number that is none."""
-    for sentence in subject.law.remarks(subject.density, subject.given_sound_speed):
-        require(subject.law.name in sentence, f"a remark does not name the law: {sentence!r}")
-        require("nan" not in sentence.split(), f"a remark has a number that is none: {sentence!r}")
+    """Sentences that name the law, without a number that is none; and so the warnings of a scene of 1 m in
+    which 1 J/kg moves for 1 ms."""
+    given = subject.density, subject.given_sound_speed
+    for what, sentences in (
+        ("remark", subject.law.remarks(*given)),
+        ("warning", subject.law.warnings(*given, Scale(energy=1.0, length=1.0), 1e-3)),
+    ):
+        for sentence in sentences:
+            require(subject.law.name in sentence, f"a {what} does not name the law: {sentence!r}")
+            require("nan" not in sentence.split(), f"a {what} has a number that is none: {sentence!r}")

@@ -4,8 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..contracts import ConstitutiveLaw, ShapeFunction, UpdateOrder
-from .checks import Check, law_checks, order_checks, shape_checks
+from ..contracts import (
+    ConstitutiveLaw,
+    EquationOfState,
+    ShapeFunction,
+    UpdateOrder,
+    VelocityUpdate,
+    VolumetricTreatment,
+)
+from .checks import (
+    Check,
+    equation_of_state_checks,
+    law_checks,
+    order_checks,
+    shape_checks,
+    velocity_checks,
+    volumetric_checks,
+)
 from .law_subject import Curve
 from .specimens import DENSITY, SOUND_SPEED
 
@@ -63,6 +78,30 @@ def order_tests(order: UpdateOrder) -> Test:
     Free flight, mass, momentum, and energy that is stored and given back but not made, in every space.
     """
     return _tests(order_checks(order))
+
+
+def velocity_tests(velocity: VelocityUpdate) -> Test:
+    """A test function, as that of ``law_tests``, for a velocity update.
+
+    Free flight, mass, momentum, and no energy from nowhere, in every space.
+    """
+    return _tests(velocity_checks(velocity))
+
+
+def volumetric_tests(treatment: VolumetricTreatment) -> Test:
+    """A test function, as that of ``law_tests``, for a volumetric treatment.
+
+    A constant field stays, the power of the pressure is what the energy loses, the rate is a number.
+    """
+    return _tests(volumetric_checks(treatment))
+
+
+def equation_of_state_tests(state: EquationOfState) -> Test:
+    """A test function, as that of ``law_tests``, for an equation of state.
+
+    A pressure that falls with the volume, at the sound speed of the case, and the energy that belongs to it.
+    """
+    return _tests(equation_of_state_checks(state))
 
 
 def _tests(checks: list[Check]) -> Test:

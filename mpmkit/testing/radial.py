@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import ShapeFunction
-from .tables import CELLS, DX, N, nodes_of, tables
+from .tables import CELLS, DX, EMPTY, N, nodes_of, tables
 from .violation import require_all, require_close
 
 RadialTables = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -18,7 +18,7 @@ def radial_tables(shape: ShapeFunction, radius: np.ndarray, half_size: np.ndarra
     """
     n, support = len(radius), shape.support
     r, l = (np.column_stack([values, values])[:, 0] for values in (radius, half_size))
-    base = np.full((n, 2), -99, dtype=np.int32)[:, 0]
+    base = np.full((n, 2), EMPTY, dtype=np.int32)[:, 0]
     weight, gradient = np.full((2, n, 2, support), np.nan)[:, :, 0]
     hoop = np.full((n, support), np.nan)
     shape.fill_radial(r, l, DX, base, weight, gradient, hoop)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..contracts import ShapeFunction
-from .tables import CELLS, DX, N, cloud, near_kink, nodes_of, on_all_nodes, tables
+from .radial import radial_tables, rings
+from .tables import CELLS, DX, EMPTY, N, cloud, near_kink, nodes_of, on_all_nodes, tables
 from .violation import require, require_all, require_close, require_same
 
 DOMAINS = ("strain", "fixed", "stretch", "volume")
@@ -13,6 +14,23 @@ DOMAINS = ("strain", "fixed", "stretch", "volume")
 
 def _at(position: np.ndarray) -> str:
     return f"at x = {position / DX:.9g} cells"
+
+
+def writes_in_place(shape: ShapeFunction) -> None:
+    """The tables are written into the arrays that are given. Without that, nothing else of it can be seen."""
+    x, l = cloud(2)
+    base, weight, gradient = tables(shape, x, l)
+    radial = dict(zip(("base", "weight", "gradient", "hoop"), radial_tables(shape, *rings()), strict=True))
+    for method, found in (
+        ("fill", {"base": base, "weight": weight, "gradient": gradient}),
+        ("fill_radial", radial),
+    ):
+        for name, table in found.items():
+            require(
+                not (np.isnan(table).all() or (table == EMPTY).all()),
+                f"its {method} left the array '{name}' as it was; it must write into it, as {name}[:] = … "
+                f"does ({name} = … only makes another array of that name)",
+            )
 
 
 def partition_of_unity(shape: ShapeFunction) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..contracts import ConstitutiveLaw, Motion
+from ..contracts import ConstitutiveLaw, Kinematics
+from ..contracts.law import initial_state
+from ..contracts.tensors import from_voigt
 
 DENSITY, SOUND_SPEED = 2574.0, 20.0
 """kg/m³ and m/s, of a slump of fresh concrete."""
@@ -29,17 +31,14 @@ class Specimens:
         self.sound_speed = sound_speed if law.uses_equation_of_state else None
         self.F = np.tile(np.eye(3), (n, 1, 1))
         self.voigt = np.zeros((n, 6))
-        self.state = {
-            name: np.full((n, *variable.shape), variable.initial, dtype=float)
-            for name, variable in law.state.items()
-        }
+        self.state = initial_state(law, n)
         self.work = np.zeros(n)
 
-    def motion(self, L: np.ndarray) -> Motion:
+    def kinematics(self, L: np.ndarray) -> Kinematics:
         """What the law is told at velocity gradients ``(n, 3, 3)``, 1/s."""
         F = self.F if self.law.needs_deformation_gradient else None
         J = np.linalg.det(self.F)
-        return Motion(np.array(L, order="C"), J, np.zeros(len(L)), self.density, F, self.sound_speed)
+        return Kinematics(np.array(L, order="C"), J, np.zeros(len(L)), self.density, F, self.sound_speed)
 
     def drive(self, L: np.ndarray, duration: float, steps: int = 1) -> np.ndarray:
         """Move at velocity gradients L, 1/s, for so many seconds; the stress at the end, ``(n, 3, 3)``."""
@@ -49,7 +48,7 @@ class Specimens:
         before = self.power(L)
         for _ in range(steps):
             self.F = increment @ self.F
-            self.law.update_stress(self.motion(L), self.state, dt, self.voigt)
+            self.law.update_stress(self.kinematics(L), self.state, dt, self.voigt)
             now = self.power(L)
             self.work += dt * (before + now) / 2
             before = now
@@ -73,17 +72,12 @@ class Specimens:
 
     def strain_energy(self) -> np.ndarray:
         """What the law says is stored, ``(n,)``, J/m³ of initial volume."""
-        still = self.motion(np.zeros_like(self.F))
+        still = self.kinematics(np.zeros_like(self.F))
         return np.broadcast_to(self.law.strain_energy(still, self.state, self.voigt), len(self.F))
 
     @property
     def stress(self) -> np.ndarray:
-        return tensor(self.voigt)
-
-
-def tensor(voigt: np.ndarray) -> np.ndarray:
-    """``(n, 6)`` in the order xx, yy, zz, yz, xz, xy to ``(n, 3, 3)``."""
-    return voigt[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+        return from_voigt(self.voigt)
 
 
 def random_gradients(n: int, seed: int = 0, isochoric: bool = False) -> np.ndarray:

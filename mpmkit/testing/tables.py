@@ -9,6 +9,8 @@ from ..contracts import ShapeFunction
 DX = 0.05
 CELLS = 7
 N = 400
+EMPTY = -99
+"""What a ``base`` holds before it is filled."""
 
 Tables = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -28,7 +30,7 @@ def cloud(dim: int, n: int = N, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
 def tables(shape: ShapeFunction, position: np.ndarray, half_size: np.ndarray) -> Tables:
     """base ``(n, dim)``, weight and gradient ``(n, dim, support)`` on cells of ``DX``; NaN if not filled."""
     n, dim = position.shape
-    base = np.full((n, dim), -99, dtype=np.int32)
+    base = np.full((n, dim), EMPTY, dtype=np.int32)
     weight = np.full((n, dim, shape.support), np.nan)
     gradient = np.full((n, dim, shape.support), np.nan)
     shape.fill(position, half_size, DX, base, weight, gradient)

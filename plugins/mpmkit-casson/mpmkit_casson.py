@@ -9,7 +9,7 @@ class Casson(GeneralisedNewtonianLaw):
     """√mu(γ̇) = √(tau0 (1 - exp(-m γ̇)) / γ̇) + √mu_c, regularised after Papanastasiou."""
 
     name = "casson"
-    api_version = 1
+    api_version = 2
     citation = "Casson, in Mill (ed.), Rheology of Disperse Systems (1959) 84-104"
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)

@@ -9,8 +9,8 @@ from mpmkit.contracts import ConstitutiveLaw, GeneralisedNewtonianLaw
 class NormalComponentsOnly(Plastic):
     """Yield, and flow with it, on the normal components alone: two published codes have it so."""
 
-    def update_stress(self, motion, state, dt, stress):
-        super().update_stress(motion, state, dt, stress)
+    def update_stress(self, kinematics, state, dt, stress):
+        super().update_stress(kinematics, state, dt, stress)
         stress[:, 3:] = 0.0
 
 
@@ -73,8 +73,8 @@ class NotTurned(Spring):
 class WholeTensor(Spring):
     """Without the deviator it resists a change of volume, as the equation of state does already."""
 
-    def update_stress(self, motion, state, dt, stress):
-        L = motion.velocity_gradient
+    def update_stress(self, kinematics, state, dt, stress):
+        L = kinematics.velocity_gradient
         stress[:] += voigt(self.modulus * dt * (L + transposed(L)))
 
 
@@ -95,7 +95,7 @@ class ThinnerThanItIs(Oil):
 class EnergyOfNothing(Oil):
     """Energy that it does not have."""
 
-    def strain_energy(self, motion, state, stress):
+    def strain_energy(self, kinematics, state, stress):
         return 1.0
 
 
@@ -145,10 +145,10 @@ class UndeclaredState(Ageing):
         state["rate"] = strain
 
 
-class ChangesTheMotion(Oil):
-    def update_stress(self, motion, state, dt, stress):
-        super().update_stress(motion, state, dt, stress)
-        motion.velocity_gradient[:] = 0.0
+class ChangesTheKinematics(Oil):
+    def update_stress(self, kinematics, state, dt, stress):
+        super().update_stress(kinematics, state, dt, stress)
+        kinematics.velocity_gradient[:] = 0.0
 
 
 class RightForLeft(NeoHooke):
@@ -159,8 +159,8 @@ class RightForLeft(NeoHooke):
 
 
 class HalfTheEnergy(NeoHooke):
-    def strain_energy(self, motion, state, stress):
-        return super().strain_energy(motion, state, stress) / 2
+    def strain_energy(self, kinematics, state, stress):
+        return super().strain_energy(kinematics, state, stress) / 2
 
 
 class NoWaveSpeed(NeoHooke):
@@ -182,3 +182,20 @@ class FlowCurveOff(Sound, GeneralisedNewtonianLaw):
 
     def apparent_viscosity(self, shear_rate):
         return -10.0 * np.expm1(-1e3 * shear_rate) / shear_rate + 5.0
+
+
+class NewStress(Oil):
+    """Gives the name of its stress to another array."""
+
+    def update_stress(self, kinematics, state, dt, stress):
+        stress = self.stress_of(kinematics.velocity_gradient)  # noqa: F841
+
+
+class ReturnsItsStress(Oil):
+    def update_stress(self, kinematics, state, dt, stress):
+        return self.stress_of(kinematics.velocity_gradient)
+
+
+class ReplacesItsState(Ageing):
+    def remember(self, state, strain):
+        state["strain"] = state["strain"] + strain

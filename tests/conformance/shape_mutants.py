@@ -159,3 +159,15 @@ class UnknownDomain(Hats):
     @property
     def particle_domain(self):
         return "stretched"
+
+
+class NewBase(Hats):
+    """Gives the name of its base to another array."""
+
+    def fill(self, position, half_size, cell_size, base, weight, gradient):
+        super().fill(position, half_size, cell_size, base.copy(), weight, gradient)
+
+
+class NewHoop(Hats):
+    def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
+        super().fill_radial(radius, half_size, cell_size, base, weight, gradient, hoop.copy())

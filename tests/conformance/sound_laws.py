@@ -28,14 +28,14 @@ def deviator(tensors):
 class Sound:
     """What every descriptor says."""
 
-    name, citation, api_version = "mutant", "none", 1
+    name, citation, api_version = "mutant", "none", 2
 
 
 class Oil(Sound, ConstitutiveLaw):
     """A Newtonian fluid of 5 Pa s, which has nothing wrong with it."""
 
-    def update_stress(self, motion, state, dt, stress):
-        stress[:] = self.stress_of(motion.velocity_gradient)
+    def update_stress(self, kinematics, state, dt, stress):
+        stress[:] = self.stress_of(kinematics.velocity_gradient)
 
     def stress_of(self, L):
         return voigt(5.0 * deviator(L + transposed(L)))
@@ -56,8 +56,8 @@ class Spring(Sound, ConstitutiveLaw):
 
     modulus: float = 1e3
 
-    def update_stress(self, motion, state, dt, stress):
-        L = motion.velocity_gradient
+    def update_stress(self, kinematics, state, dt, stress):
+        L = kinematics.velocity_gradient
         half = dt / 4 * (L - transposed(L))
         turn = np.linalg.solve(np.eye(3) - half, np.eye(3) + half)
         s = self.turned(turn, matrix(stress)) + self.modulus * dt * deviator(L + transposed(L))
@@ -69,7 +69,7 @@ class Spring(Sound, ConstitutiveLaw):
     def wave_speed(self, density, sound_speed):
         return math.sqrt(sound_speed**2 + 4 * self.modulus / (3 * density))
 
-    def strain_energy(self, motion, state, stress):
+    def strain_energy(self, kinematics, state, stress):
         return np.einsum("pij,pij->p", matrix(stress), matrix(stress)) / (4 * self.modulus)
 
 
@@ -78,8 +78,8 @@ class Ageing(Sound, ConstitutiveLaw):
 
     state = {"strain": StateVariable("1", "shear strain that it has seen")}
 
-    def update_stress(self, motion, state, dt, stress):
-        D = deviator(motion.velocity_gradient + transposed(motion.velocity_gradient)) / 2
+    def update_stress(self, kinematics, state, dt, stress):
+        D = deviator(kinematics.velocity_gradient + transposed(kinematics.velocity_gradient)) / 2
         self.remember(state, dt * np.sqrt(2 * np.einsum("pij,pij->p", D, D)))
         stress[:] = voigt(10.0 * (1 + self.strain(state, len(D)))[:, None, None] * D)
 
@@ -99,9 +99,9 @@ class NeoHooke(Sound, ConstitutiveLaw):
     uses_equation_of_state = False
     needs_deformation_gradient = True
 
-    def update_stress(self, motion, state, dt, stress):
-        J = motion.volume_ratio[:, None, None]
-        B = self.left(motion.deformation_gradient)
+    def update_stress(self, kinematics, state, dt, stress):
+        J = kinematics.volume_ratio[:, None, None]
+        B = self.left(kinematics.deformation_gradient)
         stress[:] = voigt(1e3 / J * (B - np.eye(3) + np.log(J) * np.eye(3)))
 
     def left(self, F):
@@ -110,6 +110,6 @@ class NeoHooke(Sound, ConstitutiveLaw):
     def wave_speed(self, density, sound_speed):
         return math.sqrt(3e3 / density)
 
-    def strain_energy(self, motion, state, stress):
-        F, log_J = motion.deformation_gradient, np.log(motion.volume_ratio)
+    def strain_energy(self, kinematics, state, stress):
+        F, log_J = kinematics.deformation_gradient, np.log(kinematics.volume_ratio)
         return 500.0 * (np.einsum("pij,pij->p", F, F) - 3) - 1e3 * log_J + 500.0 * log_J**2

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import equation_of_state_mutants
 import law_mutants
 import numpy as np
 import order_mutants
 import pytest
 import shape_mutants
+import velocity_mutants
+import volumetric_mutants
 from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
 
-from mpmkit.testing import Violation, law_checks, law_tests, order_checks, shape_checks
+from mpmkit.registry import installed
+from mpmkit.testing import (
+    Violation,
+    equation_of_state_checks,
+    law_checks,
+    law_tests,
+    order_checks,
+    shape_checks,
+    velocity_checks,
+    volumetric_checks,
+)
 
 # --- Laws ---------------------------------------------------------------------------------------------------
 
@@ -38,12 +51,17 @@ LAW_MUTANTS = [
     (law_mutants.KnowsTheOthers, "batch order"),
     (law_mutants.HiddenState, "declared state"),
     (law_mutants.UndeclaredState, "declared state"),
-    (law_mutants.ChangesTheMotion, "leaves the motion alone"),
+    (law_mutants.ChangesTheKinematics, "leaves the kinematics alone"),
     (law_mutants.RightForLeft, "energy gives the stress"),
     (law_mutants.RightForLeft, "frame indifference"),
     (law_mutants.HalfTheEnergy, "energy gives the stress"),
     (law_mutants.RemarkOfNobody, "remarks"),
     (law_mutants.NoCitation, "descriptor"),
+    (law_mutants.NewStress, "writes in place"),
+    (law_mutants.NewStress, "resists shear"),
+    (law_mutants.ReturnsItsStress, "writes in place"),
+    (law_mutants.ReplacesItsState, "writes in place"),
+    (law_mutants.ReplacesItsState, "declared state"),
     (Oil, "registered"),
 ]
 
@@ -97,6 +115,9 @@ SHAPE_MUTANTS = [
     (shape_mutants.WeightByDifference, "barely touched nodes"),
     (shape_mutants.Lopsided, "mirror"),
     (shape_mutants.UnknownDomain, "nodes within reach"),
+    (shape_mutants.NewBase, "writes in place"),
+    (shape_mutants.NewHoop, "writes in place"),
+    (shape_mutants.NewHoop, "radial expansion"),
 ]
 
 
@@ -146,6 +167,76 @@ def test_a_mutant_of_an_order_fails(order, name):
     assert "\n" not in str(caught.value)
 
 
+# --- Velocity updates, volumetric treatments, equations of state --------------------------------------------
+
+CHECKS = {
+    "velocity": velocity_checks,
+    "volumetric": volumetric_checks,
+    "equation_of_state": equation_of_state_checks,
+}
+OTHER_MUTANTS = [
+    ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
+    ("velocity", velocity_mutants.Still, "uniform motion plane-strain"),
+    ("velocity", velocity_mutants.Still, "free fall 3d"),
+    ("velocity", velocity_mutants.TwiceAsFar, "uniform motion axisymmetric"),
+    ("velocity", velocity_mutants.Twice, "free fall plane-strain"),
+    ("velocity", velocity_mutants.BearsNothing, "acoustic fraction"),
+    ("volumetric", volumetric_mutants.ByMass, "constant field plane-strain"),
+    ("volumetric", volumetric_mutants.ByMass, "power plane-strain"),
+    ("volumetric", volumetric_mutants.Larger, "constant field 3d"),
+    ("volumetric", volumetric_mutants.OneSided, "power axisymmetric"),
+    ("volumetric", volumetric_mutants.WritesItsInput, "power plane-strain"),
+    ("volumetric", volumetric_mutants.WholeNumbers, "constant field plane-strain"),
+    ("volumetric", volumetric_mutants.Nothing, "constant field plane-strain"),
+    ("volumetric", volumetric_mutants.DrawsApart, "relaxation rate plane-strain"),
+    ("equation_of_state", equation_of_state_mutants.WrongSign, "resists compression"),
+    ("equation_of_state", equation_of_state_mutants.WrongSign, "energy gives the pressure"),
+    ("equation_of_state", equation_of_state_mutants.TwiceAsStiff, "sound speed"),
+    ("equation_of_state", equation_of_state_mutants.HalfTheEnergy, "energy gives the pressure"),
+    ("equation_of_state", equation_of_state_mutants.NegativeEnergy, "natural state"),
+    ("equation_of_state", equation_of_state_mutants.Pressed, "natural state"),
+    ("equation_of_state", equation_of_state_mutants.WritesItsInput, "arrays"),
+    ("equation_of_state", equation_of_state_mutants.OneNumber, "arrays"),
+    ("equation_of_state", equation_of_state_mutants.KnowsTheOthers, "batch order"),
+]
+
+
+@pytest.mark.parametrize(
+    ("kind", "plugin"),
+    [
+        ("velocity", velocity_mutants.Undamped),
+        ("volumetric", volumetric_mutants.Half),
+        ("equation_of_state", equation_of_state_mutants.InLogarithm),
+    ],
+)
+def test_a_sound_one_passes(kind, plugin):
+    for check in CHECKS[kind](plugin()):
+        if check.name != "registered":
+            check()
+
+
+@pytest.mark.parametrize(("kind", "plugin", "name"), OTHER_MUTANTS)
+def test_a_mutant_of_another_kind_fails(kind, plugin, name):
+    checks = {check.name: check for check in CHECKS[kind](plugin())}
+    with pytest.raises(Violation) as caught, np.errstate(all="ignore"):
+        checks[name]()
+    assert str(caught.value).startswith(f"{kind.replace('_', ' ')} 'mutant': ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "check",
+    [
+        pytest.param(check, id=f"{name}: {check.name}")
+        for kind, checks in CHECKS.items()
+        for name, plugin in installed().of_kind(kind).items()
+        for check in checks(plugin())
+    ],
+)
+def test_conformance_of_what_is_registered(check):
+    check()
+
+
 # --- What is said -------------------------------------------------------------------------------------------
 
 
@@ -155,6 +246,42 @@ def test_the_sentence_says_what_where_and_by_how_much():
     assert str(caught.value) == (
         "law 'mutant': steady shear stress at 5 /s is 50 Pa, not 25: off by 25, 2.5e-05 allowed"
     )
+
+
+@pytest.mark.parametrize(
+    ("checks", "name", "sentence"),
+    [
+        (
+            lambda: checks_on(law_mutants.NewStress()),
+            "resists shear",
+            "law 'mutant': its update_stress left the array 'stress' as it was; it must write into it, as "
+            "stress[:] = … does (stress = … only makes another array of that name)",
+        ),
+        (
+            lambda: checks_on(law_mutants.ReturnsItsStress()),
+            "flow curve",
+            "law 'mutant': its update_stress returned a ndarray; it must write into the array 'stress', as "
+            "stress[:] = … does, and return nothing",
+        ),
+        (
+            lambda: checks_on(law_mutants.ReplacesItsState()),
+            "declared state",
+            "law 'mutant': its update_stress replaced the array of its state 'strain'; it must write into "
+            "the one there, as state['strain'][:] = … does",
+        ),
+        (
+            lambda: {check.name: check for check in shape_checks(shape_mutants.NewHoop())},
+            "radial expansion",
+            "shape 'mutant': its fill_radial left the array 'hoop' as it was; it must write into it, as "
+            "hoop[:] = … does (hoop = … only makes another array of that name)",
+        ),
+    ],
+)
+def test_what_is_not_written_is_called_by_name(checks, name, sentence):
+    """Whatever the check: not by what follows from it, such as a stress of 0 Pa."""
+    with pytest.raises(Violation) as caught:
+        checks()[name]()
+    assert str(caught.value) == sentence
 
 
 def test_each_property_is_a_test_of_its_own():

@@ -150,6 +150,24 @@ def test_general_solution_of_a_curve_beyond_any_number():
     assert found[1:] + 1e-3 * rate == pytest.approx(trial[1:], rel=1e-9)
 
 
+@pytest.mark.parametrize("stiffness", [1e-6, 1e-2, 1.0, 1e4])
+@pytest.mark.parametrize("of_rate", [False, True])
+def test_general_solution_of_a_curve_in_single_precision(stiffness, of_rate):
+    """It rises as well as in double precision, and its stress is right to what it can tell apart."""
+
+    def curve(rate):
+        return 188.91 + 45.65 * rate**0.4
+
+    def single(rate):
+        return curve(rate.astype(np.float32) if of_rate else rate).astype(np.float32)
+
+    trial = np.geomspace(1.0, 1e6, 500)
+    exact = maxwell.solve(curve, trial, stiffness, REST_SHEAR_RATE)
+    np.testing.assert_allclose(maxwell.solve(single, trial, stiffness, REST_SHEAR_RATE), exact, rtol=2e-6)
+    whole = maxwell.solve(curve, trial.astype(np.float32), stiffness, REST_SHEAR_RATE)
+    np.testing.assert_allclose(whole, exact, rtol=2e-6)
+
+
 def test_general_solution_of_a_curve_that_falls_is_refused():
     with pytest.raises(ArithmeticError, match="rise"):
         maxwell.solve(
@@ -159,7 +177,7 @@ def test_general_solution_of_a_curve_that_falls_is_refused():
 
 def test_perfect_plasticity_by_a_scalar():
     class Plastic(ElastoviscoplasticLaw):
-        name, citation, api_version = "plastic", "none", 1
+        name, citation, api_version = "plastic", "none", 2
 
         def flow_curve(self, shear_rate):
             return 50.0

@@ -154,10 +154,10 @@ def respond(simulation: mpmkit.Simulation) -> None:
         if law.needs_deformation_gradient:  # elastic: a strain of 1e-7 of the velocity gradient
             p.deformation_gradient[part] = np.eye(3) + 1e-7 * p.velocity_gradient[part]
             p.volume_ratio[part] = np.linalg.det(p.deformation_gradient[part])
-            law.update_stress(p.motion(group), group.state, 1.0, p.stress[part])
+            law.update_stress(p.kinematics(group), group.state, 1.0, p.stress[part])
             p.stress[part] *= 1e7
         else:
-            law.update_stress(p.motion(group), group.state, 1.0, p.stress[part])
+            law.update_stress(p.kinematics(group), group.state, 1.0, p.stress[part])
             stiffness = group.density * group.sound_speed**2
             p.stress[part][:, :3] += (
                 stiffness * np.trace(p.velocity_gradient[part], axis1=1, axis2=2)[:, None]

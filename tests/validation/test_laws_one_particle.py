@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bands import close_to
 
-from mpmkit.contracts import Motion
+from mpmkit.contracts import Kinematics
 from mpmkit.registry import installed
 
 pytestmark = pytest.mark.section(1)
@@ -24,8 +24,8 @@ def stress_of(law, velocity_gradient: np.ndarray) -> np.ndarray:
     """Extra stress, ``(n, 3, 3)``, at velocity gradients ``(n, 3, 3)``."""
     n = len(velocity_gradient)
     voigt = np.full((n, 6), np.nan)
-    motion = Motion(velocity_gradient, np.ones(n), np.zeros(n), density=2574.0)
-    law.update_stress(motion, {}, 1e-3, voigt)
+    kinematics = Kinematics(velocity_gradient, np.ones(n), np.zeros(n), density=2574.0)
+    law.update_stress(kinematics, {}, 1e-3, voigt)
     return voigt[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
 
 

@@ -36,7 +36,7 @@ def amplification(simulation: mpmkit.Simulation, dt: float, axes: int = 1) -> np
             p.pressure[:] = group.pressure(p.volume_ratio)
         else:
             p.volume_ratio[:] = np.linalg.det(p.deformation_gradient)
-            group.law.update_stress(p.motion(group), group.state, dt, p.stress)
+            group.law.update_stress(p.kinematics(group), group.state, dt, p.stress)
         ops.begin()
         ops.step(dt)
         found = [(getattr(p, name) - rest[name])[(slice(None), *index)] for name, index in fields]

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ...case.model import Scheme
+from ...contracts import redistribution as contract
 from ...kernels import domains
-from ...kernels.compile import CHUNK
+from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.tensors import shear_rate
 from ..grid import Grid, Window
-from ..particles import Particles
+from ..particles import Group, Particles
 from ..sorting import Sorting
+from ..stateful import State
 from .cells import BoxCells
 from .lattice import SplineLattice
 from .mirrored import Mirrored
@@ -21,101 +23,123 @@ AT_A_WALL = 1e-6
 
 
 class Stage:
-    """The contract ``Redistributing`` made real, for one scene.
+    """The contract ``Redistributing`` made real, for the fluids of one scene.
+
+    Solids keep their boxes and places; they take room like everything else.
 
     Attributes:
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
         time: s, since then.
     """
 
+    nodes: contract.Lattice
+    places: contract.Lattice
+
     def __init__(self, scheme: Scheme, grid: Grid, particles: Particles, radial: bool) -> None:
         self.redistribution = scheme.redistribution
+        self.shear = self.time = 0.0
         self._follows = scheme.shape.particle_domain == "strain"
         self._grid, self._particles, self._radial = grid, particles, radial
-        self.shear = self.time = 0.0
-        self._times = max(1, round(self._grid.cell_size / self._typical_spacing()))
+        self._times = max(1, round(grid.cell_size / self._typical_spacing()))
+
+    def state(self) -> State:
+        return {"shear": np.array(self.shear), "time": np.array(self.time)}
+
+    def restore(self, state: State) -> None:
+        self.shear, self.time = float(state["shear"]), float(state["time"])
 
     def _typical_spacing(self) -> float:
         """m, from particle to particle: that of most of them."""
         return float(np.median(self._sizes())) ** (1 / self._grid.dim)
 
     def _sizes(self) -> np.ndarray:
-        """Volume of each particle; in axisymmetric scenes its area, so that nothing is special at the axis."""
+        """Volumes; in axisymmetric scenes areas, so that nothing is special at the axis; ``(n,)``."""
         p = self._particles
         return p.volume / (2 * np.pi * p.position[:, 0]) if self._radial else p.volume
 
     # --- Every step
 
     def follow(self, dt: float) -> None:
-        """Boxes hold the volume; the shear of a step is added."""
-        p = self._particles
-        largest = np.empty(len(p) // CHUNK + 1)
-        largest[-1] = 0.0
-        domains.hold_volume(
-            p.velocity_gradient,
-            p.volume,
-            p.position,
-            self._radial,
-            p.box,
-            p.half_size,
-            self._follows,
-            largest,
-        )
-        self.shear += dt * float(largest.max())
+        """Boxes of fluids hold their volume, those of solids follow the strain; shear is added up."""
+        most = 0.0
+        for group in self._particles.groups:
+            if group.law.uses_equation_of_state:
+                most = max(most, self._hold_volume(group))
+            else:
+                self._follow_strain(group, dt)
+        self.shear += dt * most
         self.time += dt
+
+    def _hold_volume(self, group: Group) -> float:
+        """Boxes of a fluid hold its volume; returns its largest shear rate, 1/s."""
+        p, part = self._particles, group.part
+        largest = np.empty(chunk_count(part.stop - part.start))
+        domains.hold_volume(
+            p.velocity_gradient[part], p.volume[part], p.position[part], self._radial,
+            p.box[part], p.half_size[part], self._follows, largest,
+        )  # fmt: skip
+        return float(largest.max(initial=0.0))
+
+    def _follow_strain(self, group: Group, dt: float) -> None:
+        p, part = self._particles, group.part
+        least = np.zeros((0, p.dim)) if p.least_half_size is None else p.least_half_size[part]
+        domains.follow_strain(p.velocity_gradient[part], dt, p.box[part], least, p.half_size[part])
 
     def redistribute_if_due(self, window: Window, sorting: Sorting) -> bool:
         """Redistribute if so much shear has come together; whether it did. Particles must be sorted."""
         if not self.redistribution.is_due(self.shear):
             return False
-        p = self._particles
-        size = np.ascontiguousarray(self._sizes())
+        position, size = self._particles.position, np.ascontiguousarray(self._sizes())
         self._window, self._tasks = window, sorting.tasks
-        self.nodes = SplineLattice(Mirrored(self._grid, window, 1, False), sorting.tasks, p.position, size)
-        self.places = SplineLattice(
-            Mirrored(self._grid, window, self._times, False), sorting.tasks, p.position, size
-        )
+        self._splines = self.nodes = self._lattice(1, position, size)
+        self.places = self._lattice(self._times, position, size)
         self.redistribution.redistribute(self, self.time)
-        del self.nodes, self.places, self._window, self._tasks
+        del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.time = 0.0
         return True
+
+    def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
+        return SplineLattice(Mirrored(self._grid, self._window, times, False), self._tasks, position, size)
 
     # --- For the redistribution
 
     def shear_rate(self) -> np.ndarray:
         return shear_rate(self._particles.velocity_gradient)
 
-    def cells(self) -> BoxCells:
+    def cells(self) -> contract.Cells:
         p, block = self._particles, Mirrored(self._grid, self._window, 1, True)
         return BoxCells(block, self._tasks, p.position, p.half_size, np.ascontiguousarray(self._sizes()))
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
         p = self._particles
-        for group in p.groups:
-            if group.law.uses_equation_of_state:
-                p.volume_ratio[group.part] *= factor[group.part]
-        np.multiply(p.initial_volume, p.volume_ratio, out=p.volume)
+        for part in self._fluids():
+            p.volume_ratio[part] *= factor[part]
+            p.volume[part] = p.initial_volume[part] * p.volume_ratio[part]
 
     def shift(self, displacement: np.ndarray) -> None:
-        p, grid = self._particles, self._grid
-        before = p.position.copy()
-        for group in p.groups:
-            if group.law.uses_equation_of_state:
-                p.position[group.part] += displacement[group.part]
-        walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
-        margin = AT_A_WALL * grid.cell_size
-        low = np.where(walls[:, 0], margin, -np.inf)
-        high = np.where(walls[:, 1], grid.extent - margin, np.inf)
-        # Only a particle that a shift moved is kept from a wall: others stay where they are, to the bit.
-        moved = (p.position != before).any(axis=1)
-        p.position[moved] = np.clip(p.position[moved], low, high)
+        p, before = self._particles, self._particles.position.copy()
+        low, high = self._kept_from_walls()
+        for part in self._fluids():
+            moved = displacement[part].any(axis=1)  # others stay where they are, to the bit
+            shifted = np.clip(p.position[part] + displacement[part], low, high)
+            p.position[part][moved] = shifted[moved]
         if p.affine.shape[1]:
             change = np.einsum("pij,pj->pi", p.affine, p.position - before)
-            for axis in range(grid.dim):
+            for axis in range(p.dim):
                 along = np.ascontiguousarray(change[:, axis])
-                # What a node gains is taken from all around it: not one bit of momentum is made.
-                taken = self.nodes.at_particles(self.nodes.average(along, p.mass))
+                # What a node gains is taken from all around it, so that no momentum is made.
+                taken = self._splines.at_particles(self._splines.average(along, p.mass))
                 p.velocity[:, axis] += along - taken
 
+    def _kept_from_walls(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest places, m, along each axis; infinite where there is no wall."""
+        grid, margin = self._grid, AT_A_WALL * self._grid.cell_size
+        walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
+        return np.where(walls[:, 0], margin, -np.inf), np.where(walls[:, 1], grid.extent - margin, np.inf)
+
     def weigh(self, factor: np.ndarray) -> None:
-        self._particles.quadrature[:] = factor
+        for part in self._fluids():
+            self._particles.quadrature[part] = factor[part]
+
+    def _fluids(self) -> list[slice]:
+        return [group.part for group in self._particles.groups if group.law.uses_equation_of_state]

@@ -2,11 +2,13 @@ import numpy as np
 import pytest
 from mpmkit_thixotropy import Thixotropic
 
-from mpmkit.contracts import Motion
+from mpmkit.contracts import Kinematics
+from mpmkit.contracts.law import initial_state
 from mpmkit.testing import law_tests
 
-TAU0, MU, T, ALPHA = 50.0, 20.0, 100.0, 0.5
-LAW = Thixotropic(yield_stress=TAU0, plastic_viscosity=MU, flocculation_time=T, breakdown=ALPHA)
+TAU0, MU, T, ALPHA, G = 50.0, 20.0, 100.0, 0.5, 192e3
+GIVEN = {"yield_stress": TAU0, "plastic_viscosity": MU, "flocculation_time": T, "breakdown": ALPHA}
+LAW = Thixotropic(**GIVEN, shear_modulus=G)
 
 
 def steady(rate):
@@ -24,8 +26,8 @@ def drive(rate, duration, steps, structure=0.0, stress=None):
     state = {"structure": np.full(1, structure)}
     stress = np.zeros((1, 6)) if stress is None else stress
     for _ in range(steps):
-        motion = Motion(gradient, np.ones(1), np.zeros(1), 2400.0, sound_speed=40.0)
-        LAW.update_stress(motion, state, duration / steps, stress)
+        kinematics = Kinematics(gradient, np.ones(1), np.zeros(1), 2400.0, sound_speed=40.0)
+        LAW.update_stress(kinematics, state, duration / steps, stress)
     return state["structure"][0], stress
 
 
@@ -57,8 +59,16 @@ def test_structure_breaks_down_exponentially():
 def test_rest_makes_it_harder_to_start_again():
     """After 100 s at rest, tau0 has doubled: a stress that flowed before is now borne elastically."""
     fresh, rested = 0.0, 100.0 / T
-    strain = 1.5 * TAU0 / LAW.shear_modulus(2400.0, 40.0)
+    strain = 1.5 * TAU0 / G
     for structure, flows in ((fresh, True), (rested, False)):
         _, stress = drive(strain / 1e-4, 1e-4, 50, structure=structure)
         _, held = drive(0.0, 10.0, 1000, structure=structure, stress=stress)
         assert (held[0, 4] < 1.2 * TAU0) == flows
+
+
+def test_a_case_may_start_with_structure():
+    """Concrete that has stood for 30 s: λ = 0.3, so that it yields at 1.3 tau0 at first."""
+    rested = Thixotropic(**GIVEN, initial_structure=30.0 / T)
+    (before,) = rested.flow_curve(np.array([1e-12]))
+    assert before == pytest.approx(1.3 * TAU0)
+    assert initial_state(rested, 3)["structure"].tolist() == [0.3] * 3

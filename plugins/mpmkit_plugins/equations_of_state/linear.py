@@ -12,7 +12,7 @@ class Linear(EquationOfState):
     """p = c² (ρ - ρ0) = ρ0 c² (1/J - 1)."""
 
     name = "linear"
-    api_version = 1
+    api_version = 2
     citation = "Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214-226"
 
     def pressure(self, volume_ratio: np.ndarray, density: float, sound_speed: float) -> np.ndarray:

@@ -1,5 +1,7 @@
 """Bingham's plastic, regularised."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numba import prange
 
@@ -16,7 +18,7 @@ class Bingham(GeneralisedNewtonianLaw):
     """
 
     name = "bingham"
-    api_version = 1
+    api_version = 2
     citation = "Bingham, Fluidity and Plasticity (1922); Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     exact_form = "bingham-evp"
@@ -29,6 +31,9 @@ class Bingham(GeneralisedNewtonianLaw):
         viscosity = np.empty(len(shear_rate))
         _viscosity(shear_rate, self.yield_stress, self.plastic_viscosity, self.regularisation, viscosity)
         return viscosity
+
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> float:
+        return self.yield_stress
 
 
 @kernel()

@@ -12,7 +12,7 @@ class BinghamEVP(ElastoviscoplasticLaw):
     """
 
     name = "bingham-evp"
-    api_version = 1
+    api_version = 2
     citation = "Bingham, Fluidity and Plasticity (1922); Saramito, J. Non-Newton. Fluid Mech. 145 (2007) 1-14"
 
     yield_stress: float = quantity("Pa", "yield stress tau0", ge=0)

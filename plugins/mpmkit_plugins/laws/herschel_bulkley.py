@@ -1,5 +1,7 @@
 """Herschel and Bulkley's fluid, regularised."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numba import prange
 
@@ -19,7 +21,7 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
     """
 
     name = "herschel-bulkley"
-    api_version = 1
+    api_version = 2
     citation = "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; Papanastasiou, J. Rheol. 31 (1987) 385-404"
 
     exact_form = "herschel-bulkley-evp"
@@ -34,6 +36,9 @@ class HerschelBulkley(GeneralisedNewtonianLaw):
         least = 1 / m if self.flow_index < 1 else 0.0
         _viscosity(shear_rate, self.yield_stress, self.consistency, self.flow_index, m, least, viscosity)
         return viscosity
+
+    def yield_point(self, state: Mapping[str, np.ndarray]) -> float:
+        return self.yield_stress
 
 
 @kernel()

@@ -20,7 +20,7 @@ class HerschelBulkleyEVP(ElastoviscoplasticLaw):
     """
 
     name = "herschel-bulkley-evp"
-    api_version = 1
+    api_version = 2
     citation = (
         "Herschel & Bulkley, Kolloid-Z. 39 (1926) 291-300; "
         "Saramito, J. Non-Newton. Fluid Mech. 158 (2009) 154-161"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numba import prange
 
-from mpmkit.contracts import ConstitutiveLaw, Motion, hookimpl, quantity
+from mpmkit.contracts import ConstitutiveLaw, Kinematics, hookimpl, quantity
 from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 
 
@@ -16,7 +16,7 @@ class NeoHookean(ConstitutiveLaw):
     """
 
     name = "neo-hookean"
-    api_version = 1
+    api_version = 2
     citation = "Wallstedt & Guilkey, J. Comput. Phys. 227 (2008) 9628-9642"
     uses_equation_of_state = False
     needs_deformation_gradient = True
@@ -34,19 +34,30 @@ class NeoHookean(ConstitutiveLaw):
         return self.youngs_modulus * nu / ((1 + nu) * (1 - 2 * nu))
 
     def update_stress(
-        self, motion: Motion, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], dt: float, stress: np.ndarray
     ) -> None:
         _cauchy_stress(
-            motion.deformation_gradient, motion.volume_ratio, self.shear_modulus, self.lame, stress
+            kinematics.deformation_gradient, kinematics.volume_ratio, self.shear_modulus, self.lame, stress
         )
 
     def wave_speed(self, density: float, sound_speed: float | None) -> float:
         return float(np.sqrt((self.lame + 2 * self.shear_modulus) / density))
 
+    def present_wave_speed(self, kinematics: Kinematics, state: Mapping[str, np.ndarray]) -> float:
+        """√((G (λ_b + 1) + λ (1 - ln J))/ρ0), the largest one.
+
+        A plane wave along n sees ρ0 c² = G n·b n + G + λ (1 - ln J) with b = F Fᵀ; λ_b, the largest
+        eigenvalue of b, is bound by the largest sum of absolute values in a row.
+        """
+        F = kinematics.deformation_gradient
+        assert F is not None  # the law asks for it
+        stiffest = _largest_wave_modulus(F, kinematics.volume_ratio, self.shear_modulus, self.lame)
+        return float(np.sqrt(stiffest / kinematics.density))
+
     def strain_energy(
-        self, motion: Motion, state: Mapping[str, np.ndarray], stress: np.ndarray
+        self, kinematics: Kinematics, state: Mapping[str, np.ndarray], stress: np.ndarray
     ) -> np.ndarray:
-        F, log_J = motion.deformation_gradient, np.log(motion.volume_ratio)
+        F, log_J = kinematics.deformation_gradient, np.log(kinematics.volume_ratio)
         assert F is not None  # the law asks for it
         G, lame = self.shear_modulus, self.lame
         return G / 2 * (np.einsum("pij,pij->p", F, F) - 3) - G * log_J + lame / 2 * log_J**2
@@ -66,6 +77,22 @@ def _cauchy_stress(F, J, G, lame, stress):
                 stress[p, 3 + k] = a * (
                     F[p, i, 0] * F[p, j, 0] + F[p, i, 1] * F[p, j, 1] + F[p, i, 2] * F[p, j, 2]
                 )
+
+
+@kernel()
+def _largest_wave_modulus(F, J, G, lame):
+    n = len(F)
+    largest = np.zeros(chunk_count(n))
+    for chunk in prange(chunk_count(n)):
+        for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+            stretch = 0.0
+            for i in range(3):
+                row = 0.0
+                for j in range(3):
+                    row += abs(F[p, i, 0] * F[p, j, 0] + F[p, i, 1] * F[p, j, 1] + F[p, i, 2] * F[p, j, 2])
+                stretch = max(stretch, row)
+            largest[chunk] = max(largest[chunk], G * (stretch + 1.0) + lame * (1.0 - np.log(J[p])))
+    return largest.max()
 
 
 @hookimpl

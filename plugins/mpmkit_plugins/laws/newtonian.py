@@ -9,7 +9,7 @@ class Newtonian(GeneralisedNewtonianLaw):
     """mu(γ̇) = mu: tau = mu γ̇ in simple shear."""
 
     name = "newtonian"
-    api_version = 1
+    api_version = 2
     citation = "Batchelor, An Introduction to Fluid Dynamics (2000)"
 
     viscosity: float = quantity("Pa s", "dynamic viscosity mu", ge=0)

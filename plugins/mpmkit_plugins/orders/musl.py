@@ -10,7 +10,7 @@ class MUSL(UpdateOrder):
     """
 
     name = "musl"
-    api_version = 1
+    api_version = 2
     citation = "Sulsky, Zhou & Schreyer, Comput. Phys. Commun. 87 (1995) 236-252"
 
     def step(self, ops: Operations, dt: float) -> None:

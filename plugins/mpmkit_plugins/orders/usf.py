@@ -10,7 +10,7 @@ class USF(UpdateOrder):
     """
 
     name = "usf"
-    api_version = 1
+    api_version = 2
     citation = "Bardenhagen, J. Comput. Phys. 180 (2002) 383-403"
 
     def step(self, ops: Operations, dt: float) -> None:

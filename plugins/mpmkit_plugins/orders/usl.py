@@ -20,7 +20,7 @@ class USL(UpdateOrder):
     """
 
     name = "usl"
-    api_version = 1
+    api_version = 2
     citation = "Bardenhagen, J. Comput. Phys. 180 (2002) 383-403"
     acoustic_fraction = 0.4
     viscous_fraction = 0.2

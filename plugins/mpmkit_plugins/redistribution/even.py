@@ -34,7 +34,7 @@ class Even(Redistribution):
     """
 
     name = "even"
-    api_version = 1
+    api_version = 2
     citation = (
         "after Tartakovsky & Meakin, Phys. Rev. E 72 (2005) 026301, and Baumgarten & Kamrin, "
         "Int. J. Numer. Meth. Eng. 124 (2023) 1334-1367"

@@ -7,7 +7,7 @@ class NoRedistribution(Redistribution):
     """The scheme as published, and solids, whose particles keep their neighbours."""
 
     name = "none"
-    api_version = 1
+    api_version = 2
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
     def redistribute(self, ops, time) -> None:

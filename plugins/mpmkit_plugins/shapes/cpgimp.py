@@ -19,7 +19,7 @@ class CpGIMP(ShapeFunction):
     """
 
     name = "cpgimp"
-    api_version = 1
+    api_version = 2
     citation = (
         "Bardenhagen & Kober, CMES 5 (2004) 477-496; "
         "Nairn & Guilkey, Int. J. Numer. Meth. Eng. 101 (2015) 127-147"

@@ -13,7 +13,7 @@ class Linear(ShapeFunction):
     """N = 1 - ξ and ξ at the two nodes of the cell, ξ the position in it; the particle is a point."""
 
     name = "linear"
-    api_version = 1
+    api_version = 2
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
     support = 2
     smooth = False

@@ -19,7 +19,7 @@ class APIC(VelocityUpdate):
     """
 
     name = "apic"
-    api_version = 1
+    api_version = 2
     citation = "Jiang, Schroeder & Teran, J. Comput. Phys. 338 (2017) 137-164, with a rate"
     affine = True
     acoustic_fraction = 0.4
@@ -34,7 +34,7 @@ class APIC(VelocityUpdate):
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
         rate = 0.05 / ops.acoustic_time if self.rate is None else self.rate
-        ops.advance(dt, flip=math.exp(-rate * dt), affine=True)
+        ops.move_particles(dt, flip=math.exp(-rate * dt), affine=True)
 
 
 @hookimpl

@@ -13,7 +13,7 @@ class Blend(VelocityUpdate):
     """
 
     name = "blend"
-    api_version = 1
+    api_version = 2
     citation = "Stomakhin et al., ACM Trans. Graph. 32 (2013) 102, with a rate instead of a fraction a step"
 
     rate: float = quantity(
@@ -21,7 +21,7 @@ class Blend(VelocityUpdate):
     )
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=math.exp(-self.rate * dt))
+        ops.move_particles(dt, flip=math.exp(-self.rate * dt))
 
 
 @hookimpl

@@ -7,11 +7,11 @@ class FLIP(VelocityUpdate):
     """v ← v + Δṽ: what the step changed at the nodes; no numerical viscosity, and noise stays."""
 
     name = "flip"
-    api_version = 1
+    api_version = 2
     citation = "Brackbill & Ruppel, J. Comput. Phys. 65 (1986) 314-343"
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=1.0)
+        ops.move_particles(dt, flip=1.0)
 
 
 @hookimpl

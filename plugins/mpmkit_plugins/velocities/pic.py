@@ -7,14 +7,14 @@ class PIC(VelocityUpdate):
     """v ← ṽ: free of noise, at the price of a viscosity of about dx²/dt that grows as the step shrinks."""
 
     name = "pic"
-    api_version = 1
+    api_version = 2
     citation = "Harlow, Methods Comput. Phys. 3 (1964) 319-343"
 
     def cautions(self, case) -> list[str]:
         return ["velocity 'pic' damps like a viscosity of Δx²/Δt, more the smaller the step; 'apic' does not"]
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
-        ops.advance(dt, flip=0.0)
+        ops.move_particles(dt, flip=0.0)
 
 
 @hookimpl

@@ -28,7 +28,7 @@ class NodalAverage(VolumetricTreatment):
     """
 
     name = "nodal-average"
-    api_version = 1
+    api_version = 2
     citation = (
         "Love & Sulsky, Int. J. Numer. Meth. Eng. 65 (2006) 1608-1638, carried over to rate and pressure"
     )
@@ -65,7 +65,7 @@ def _is_thin(law) -> bool:
     if not law.uses_equation_of_state or getattr(law, "yield_stress", 0.0) >= HOLDS_YIELD:
         return False
     viscous = isinstance(law, GeneralisedNewtonianLaw)
-    return not viscous or float(np.ravel(law.apparent_viscosity(np.ones(1)))[0]) < HOLDS_VISCOSITY
+    return not viscous or law.viscosity_at(1.0) < HOLDS_VISCOSITY
 
 
 @hookimpl

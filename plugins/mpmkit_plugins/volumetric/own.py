@@ -14,7 +14,7 @@ class Own(VolumetricTreatment):
     """
 
     name = "own"
-    api_version = 1
+    api_version = 2
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
     def cautions(self, case) -> list[str]:

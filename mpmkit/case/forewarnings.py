@@ -1,0 +1,183 @@
+"""What a scene is known to do wrong, or to lose, before it is run: each is one sentence.
+
+Plug-ins say for themselves what fails (``Plugin.cautions``); here is what follows from bodies, walls and
+gravity.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import combinations, islice
+
+import numpy as np
+
+from .model import Body, Case, Material
+from .plausibility import implausible
+
+CLOSED = ("slip", "stick", "symmetry")
+PULLING = ("slip", "symmetry")
+"""Faces that hold the normal velocity of what is at them, whether it presses on them or leaves."""
+MOST = 5
+"""Sentences of one kind: of a hundred drops, five pairs say all."""
+NOTICED = 0.1
+"""Part of gravity, away from a wall, that is worth a word."""
+
+
+def forewarnings(case: Case) -> list[str]:
+    """A sentence for each thing that the scene is known to do wrong, and each value that cannot be meant."""
+    kinds = (_falls_out, _hangs, _touching, implausible)
+    with np.errstate(all="ignore"):  # a case may have numbers whose products are beyond any
+        return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
+
+
+# --- Walls
+
+
+def _falls_out(case: Case) -> Iterator[str]:
+    """Bodies that nothing holds over an open face, to which gravity draws them before the end."""
+    g = case.gravity_vector
+    if not g.any():
+        return
+    axis = int(np.argmax(np.abs(g)))
+    side = _side(case, axis, upwards=g[axis] > 0)
+    if case.grid.faces.get(side, "open") != "open":
+        return
+    held = [number for number, body in enumerate(case.bodies) if _is_held(case, body, axis)]
+    for number, body in enumerate(case.bodies):
+        if number in held or any(_is_below(case, case.bodies[other], body, axis) for other in held):
+            continue
+        lower, upper = _bounds(case, body)
+        ends = case.grid.domain[case.space_.axes[axis]]
+        distance = float(ends[1] - upper[axis]) if g[axis] > 0 else float(lower[axis] - ends[0])
+        speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
+        pull = abs(float(g[axis]))
+        time = (math.hypot(speed, math.sqrt(2 * pull * max(0.0, distance))) - speed) / pull
+        if time <= case.until:
+            when = "at once" if time < 1e-6 * case.until else f"after about {time:.2g} s"
+            yield (
+                f"bodies.{number} has no floor: gravity draws it to the face {side}, which is open, and it "
+                f'leaves the grid there {when}; for a floor write "{side}": "stick", or "slip", in grid.faces'
+            )
+
+
+def _hangs(case: Case) -> Iterator[str]:
+    """Bodies that leave a slip or symmetry face by gravity or by their own motion, and are held there."""
+    g = case.gravity_vector
+    for axis in range(case.space_.dim):
+        for upwards in (False, True):
+            side = _side(case, axis, upwards)
+            face = case.grid.faces.get(side)
+            if face not in PULLING or (case.space_.radial and side == "r_min"):
+                continue
+            inward = -1.0 if upwards else 1.0
+            for number, body in enumerate(case.bodies):
+                moves = inward * _velocity(case, body)[axis] > 0
+                falls = inward * g[axis] > NOTICED * float(np.linalg.norm(g)) > 0
+                opposite = case.grid.faces.get(_side(case, axis, not upwards))
+                between = opposite in CLOSED and _touches(case, body, axis, not upwards)
+                if (moves or falls) and not between and _touches(case, body, axis, upwards):
+                    why = "gravity draws" if falls else "its velocity takes"
+                    yield (
+                        f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
+                        f'"{face}" face does not let go of what is at it; one of kind "friction" does'
+                    )
+
+
+# --- Bodies that touch
+
+
+def _touching(case: Case) -> Iterator[str]:
+    """Pairs of bodies that touch, or come to, and are more than two pieces of one."""
+    materials: list[Material] = []
+    for body in case.bodies:
+        if body.material not in materials:
+            materials.append(body.material)
+    of = [materials.index(body.material) for body in case.bodies]
+    fluid = [material.constitutive_law.uses_equation_of_state for material in materials]
+    for i, j in combinations(range(len(case.bodies)), 2):
+        a, b = case.bodies[i], case.bodies[j]
+        at_one = a.velocity == b.velocity
+        if of[i] == of[j] and at_one and (fluid[of[i]] or _gap(case, a, b) <= case.grid.cell_size):
+            continue  # two pieces of one body
+        if not _meet(case, a, b):
+            continue
+        if of[i] != of[j] and fluid[of[i]] and fluid[of[j]]:
+            yield (
+                f"bodies.{i} and bodies.{j} are two fluids that touch, or come to: where they move along "
+                "each other they lose energy that they should keep (a wave between two thin liquids lost all "
+                "of it in less than a period), so that results of their motion are not to be trusted"
+            )
+        else:
+            yield (
+                f"bodies.{i} and bodies.{j} touch, or come to: bodies share the velocity of the grid, so "
+                "that they stop 0.5 to 1.1 cells apart, drag each other though no friction is asked for, and "
+                "do not part again as they should; there is no contact between bodies yet"
+            )
+
+
+def _meet(case: Case, a: Body, b: Body) -> bool:
+    """Whether two bodies are within a cell of each other, or move or fall towards each other."""
+    if _gap(case, a, b) <= case.grid.cell_size:
+        return bool(case.gravity_vector.any()) or a.velocity is not None or b.velocity is not None
+    relative = (_velocity(case, b) - _velocity(case, a)) * case.until
+    if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
+        return True
+    if not case.gravity_vector.any():
+        return False
+    axis = int(np.argmax(np.abs(case.gravity_vector)))
+    return _is_below(case, a, b, axis) or _is_below(case, b, a, axis)
+
+
+def _gap(case: Case, a: Body, b: Body, shift: np.ndarray | None = None) -> float:
+    """Distance, m, of the boxes around two bodies, of which the second is drawn out by ``shift``."""
+    (low_a, high_a), (low_b, high_b) = _bounds(case, a), _bounds(case, b)
+    shift = np.zeros(case.space_.dim) if shift is None else shift
+    low_b, high_b = low_b + np.minimum(shift, 0), high_b + np.maximum(shift, 0)
+    apart = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
+    return float(np.linalg.norm(apart))
+
+
+def _is_below(case: Case, lower: Body, upper: Body, axis: int) -> bool:
+    """Whether the second body would fall on the first, along the axis on which gravity acts most."""
+    (low_a, high_a), (low_b, high_b) = _bounds(case, lower), _bounds(case, upper)
+    others = [a for a in range(case.space_.dim) if a != axis]
+    over = all(low_a[a] < high_b[a] and low_b[a] < high_a[a] for a in others)
+    tolerance = 1e-6 * case.grid.cell_size
+    if case.gravity_vector[axis] < 0:
+        return bool(over and low_b[axis] >= high_a[axis] - tolerance)
+    return bool(over and high_b[axis] <= low_a[axis] + tolerance)
+
+
+def _is_held(case: Case, body: Body, axis: int) -> bool:
+    """Whether a body is at a wall that could hold it against gravity along an axis."""
+    faces = case.grid.faces
+    for a in range(case.space_.dim):
+        for upwards in (False, True):
+            face = faces.get(_side(case, a, upwards), "open")
+            rough = face == "stick" or not isinstance(face, str)
+            if (rough or (a == axis and face in CLOSED)) and _touches(case, body, a, upwards):
+                return True
+    return False
+
+
+def _touches(case: Case, body: Body, axis: int, upwards: bool) -> bool:
+    lower, upper = _bounds(case, body)
+    ends = case.grid.domain[case.space_.axes[axis]]
+    distance = ends[1] - upper[axis] if upwards else lower[axis] - ends[0]
+    return bool(distance < case.grid.cell_size / 2)
+
+
+def _side(case: Case, axis: int, upwards: bool) -> str:
+    return f"{case.space_.axes[axis]}_{'max' if upwards else 'min'}"
+
+
+def _bounds(case: Case, body: Body) -> tuple[np.ndarray, np.ndarray]:
+    lower, upper = body.shape.bounds(case.space_)
+    return np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
+
+
+def _velocity(case: Case, body: Body) -> np.ndarray:
+    """The uniform initial velocity of a body, m/s; zero for a standing wave, whose mean it is not."""
+    uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * case.space_.dim
+    return np.array(uniform, dtype=float)

@@ -1,0 +1,24 @@
+"""``mpmkit report``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command("report")
+@click.argument("directory", type=click.Path())
+def command(directory: str) -> None:
+    """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""
+    from ..errors import CaseError, MpmkitError, reason
+    from ..report import write_report
+
+    try:
+        written = write_report(Path(directory))
+    except MpmkitError:
+        raise
+    except Exception as error:  # a file of the run that someone has changed or cut off
+        raise CaseError(f"the pictures of '{directory}' cannot be drawn: {reason(error)}") from None
+    for path in written:
+        click.echo(str(path))

@@ -1,0 +1,56 @@
+"""Looks at the tables of shape functions: where they lead, and whether they sum to what they must."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import prange
+
+from .compile import CHUNK, chunk_count, function, kernel
+
+
+@function()
+def near(position, inverse_cell, base, least, most):
+    """Whether ``least <= base - position / cell <= most`` for all entries of two flat arrays."""
+    good = True
+    for k in range(len(base)):
+        away = base[k] - position[k] * inverse_cell
+        good &= (away >= least) & (away <= most)
+    return good
+
+
+@kernel()
+def near_in_parallel(position, inverse_cell, base, least, most):
+    """As ``near``."""
+    n = len(base)
+    far = np.zeros(chunk_count(n), dtype=np.bool_)
+    for c in prange(len(far)):
+        part = slice(c * CHUNK, min(n, (c + 1) * CHUNK))
+        far[c] = not near(position[part], inverse_cell, base[part], least, most)
+    return not far.any()
+
+
+@kernel()
+def first_untrue(weight, gradient, cell_size, close, firsts):
+    """First particle whose weights along an axis do not sum to one, or gradients to zero; -1 without one.
+
+    A sum that is not a number is wrong as well. ``firsts`` is scratch, an integer a chunk.
+    """
+    n, dim, support = weight.shape
+    chunks = chunk_count(n)
+    for c in prange(chunks):
+        first = -1
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            good = True
+            for d in range(dim):
+                whole, none = -1.0, 0.0
+                for a in range(support):
+                    whole += weight[p, d, a]
+                    none += gradient[p, d, a]
+                good &= (abs(whole) <= close) & (abs(none) * cell_size <= close)
+            if not good and first < 0:
+                first = p
+        firsts[c] = first
+    for c in range(chunks):
+        if firsts[c] >= 0:
+            return firsts[c]
+    return -1

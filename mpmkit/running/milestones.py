@@ -1,0 +1,158 @@
+"""What happens once in a run, and when: the spread reaches 500 mm, the material comes to rest.
+
+Both are watched in the steps themselves. The rows of the history have no part in it, so that a run that
+records less finds the same numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..kernels.sums import kinetics
+from ..output.summary import T500_DIAMETER
+from ..solver.simulation import CONTROL_INTERVAL, Simulation
+
+LOOKS = CONTROL_INTERVAL
+"""Steps between two looks. Near the diameter of T500 every step is looked at: a look at every step of the
+whole run would take 3 % of it."""
+AHEAD = 4.0
+"""Every step is looked at if the spread, growing as between the last two looks, has so many looks left."""
+SLOW = 1e-2
+"""RMS speed at rest, as a part of the largest RMS speed so far: a 10,000th of the kinetic energy."""
+STILL = 2e-3
+"""Change of the spread diameter at rest, within h / (largest RMS speed), as a part of h: a 1000th for each of
+its two edges."""
+SMOOTHING = 0.02
+"""Time over which the rate of the spread is averaged, in units of h / (largest RMS speed)."""
+
+
+@dataclass
+class _Seen:
+    """What has been seen so far: numbers, so that a checkpoint can hold them."""
+
+    time: float = math.nan
+    """of the last step at which the spread was measured, s"""
+    spread: float = math.nan
+    """the spread diameter then, m"""
+    close: float = 0.0
+    """1 where every step has to be looked at"""
+    t500: float = math.nan
+    t500_step: float = math.nan
+    look_time: float = math.nan
+    """of the last look, s"""
+    look_spread: float = math.nan
+    fastest: float = 0.0
+    """largest RMS speed so far, m/s"""
+    rate: float = 0.0
+    """rate of the spread diameter, m/s, averaged"""
+    quiet_since: float = math.nan
+    """since when the material has been slow and kept its spread, s"""
+    band_since: float = math.nan
+    """since when the spread has been between the two that follow, s"""
+    band_low: float = math.inf
+    band_high: float = -math.inf
+
+
+class Milestones:
+    """Watches a simulation; ``watch`` is to be called before the first step and after each one.
+
+    **T500** is the time at which the spread diameter first rises to 500 mm, linear between two steps. A body
+    that is so wide at the start has none.
+
+    **At rest** is what moves, and spreads, no more. With U the largest RMS speed of the particles that the
+    run has had, and h the height of the bodies at the start: the RMS speed is at most ``SLOW`` U, the spread
+    diameter changes by at most ``STILL`` h in a time of h / U, and both have been so for at least h / U. The
+    scales are the run's own, so that water and a stiff paste are judged alike; an elastic wobble of what has
+    come to rest is small enough to pass.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._seen = _Seen()
+
+    def watch(self) -> None:
+        """Look at the present step, where it is due."""
+        due = self._simulation.steps % LOOKS == 0
+        if due or self._seen.close:
+            self._watch_spread()
+        if due:
+            self._look()
+
+    def finish(self) -> None:
+        """Look at the last step."""
+        if self._simulation.steps % LOOKS:
+            self._watch_spread()
+            self._look()
+
+    def t500(self, trusted: bool = True) -> float | None:
+        """T500, s; None if it never came.
+
+        Where a guard stopped the run, not ``trusted``, it counts only up to the last step that the guards
+        looked at and let pass.
+        """
+        last_passed = (self._simulation.steps - 1) // CONTROL_INTERVAL * CONTROL_INTERVAL
+        if math.isnan(self._seen.t500) or not (trusted or self._seen.t500_step <= last_passed):
+            return None
+        return self._seen.t500
+
+    @property
+    def at_rest_since(self) -> float | None:
+        """Since when the material has been at rest, s; None while it moves."""
+        seen = self._seen
+        lasted = seen.look_time - seen.quiet_since
+        return seen.quiet_since if lasted * seen.fastest >= self._simulation.case.height else None
+
+    @property
+    def spreading(self) -> float | None:
+        """Rate at which the spread diameter grows at present, m/s; None where there is no spread."""
+        return None if math.isnan(self._seen.look_spread) else self._seen.rate
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What has been seen, for a checkpoint."""
+        return {name: np.array(value) for name, value in vars(self._seen).items()}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Go on from what had been seen."""
+        self._seen = _Seen(**{name: float(value) for name, value in state.items()})
+
+    def _watch_spread(self) -> None:
+        simulation, seen = self._simulation, self._seen
+        time, spread = simulation.time, simulation.measures.spread(simulation.particles)
+        if math.isnan(seen.t500) and seen.spread < T500_DIAMETER <= spread:
+            part = (T500_DIAMETER - seen.spread) / (spread - seen.spread)
+            seen.t500 = seen.time + part * (time - seen.time)
+            seen.t500_step = simulation.steps
+            seen.close = 0.0
+        seen.time, seen.spread = time, spread
+
+    def _look(self) -> None:
+        simulation, seen = self._simulation, self._seen
+        p = simulation.particles
+        mass, doubled, _ = kinetics(p.mass, p.velocity)
+        speed = math.sqrt(doubled / mass)
+        seen.fastest = max(seen.fastest, speed)
+        passed, grown = seen.time - seen.look_time, seen.spread - seen.look_spread
+        if passed > 0 and math.isfinite(grown):
+            new = -math.expm1(-passed * seen.fastest / (SMOOTHING * simulation.case.height))
+            seen.rate += new * (grown / passed - seen.rate)
+            below = seen.spread < T500_DIAMETER <= seen.spread + AHEAD * grown
+            seen.close = float(below and math.isnan(seen.t500))
+        seen.look_time, seen.look_spread = seen.time, seen.spread
+        keeps = self._keeps_its_spread()
+        if speed > SLOW * seen.fastest or not keeps:
+            seen.quiet_since = math.nan
+        elif math.isnan(seen.quiet_since):
+            seen.quiet_since = seen.time
+
+    def _keeps_its_spread(self) -> bool:
+        """Whether the spread is in the band where it was, or has left it slowly: then a new band begins."""
+        seen, height = self._seen, self._simulation.case.height
+        seen.band_low, seen.band_high = min(seen.band_low, seen.spread), max(seen.band_high, seen.spread)
+        if seen.band_high - seen.band_low <= STILL * height:
+            return True
+        slowly = (seen.time - seen.band_since) * seen.fastest >= height
+        seen.band_since, seen.band_low, seen.band_high = seen.time, seen.spread, seen.spread
+        return slowly

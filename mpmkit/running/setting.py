@@ -1,0 +1,39 @@
+"""What a case takes for granted, said before a run: how the floor holds the material, and when it is free."""
+
+from __future__ import annotations
+
+from ..case.model import Case, Face
+
+FLOORS = {
+    "slip": "free slip, so that it does not hold the material back",
+    "symmetry": "a plane of symmetry, which is as free slip",
+    "stick": "stick, so that the material does not slide on it",
+}
+"""What a face means as a floor, in words."""
+
+
+def setting(case: Case) -> list[str]:
+    """Sentences on the floor and on the release of the material.
+
+    A scene has a floor if gravity pulls towards a closed face of the vertical axis.
+    """
+    pull, axis = float(case.gravity_vector[-1]), case.space_.axes[-1]
+    if pull == 0:
+        return []
+    name = f"{axis}_{'min' if pull < 0 else 'max'}"
+    face = case.grid.faces.get(name, "open")
+    if face in ("open", "periodic"):
+        return []
+    said = [f"floor: {name} is {_in_words(face)}"]
+    if not any(body.largest_speed for body in case.bodies):
+        said.append(
+            "release: the material is free from t = 0 on, at once; a T500 measured in a laboratory also "
+            "includes the time in which the cone is lifted"
+        )
+    return said
+
+
+def _in_words(face: Face) -> str:
+    if isinstance(face, str):
+        return FLOORS[face]
+    return f"friction, with the coefficient {face.coefficient:g}"

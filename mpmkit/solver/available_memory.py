@@ -1,0 +1,72 @@
+"""How much memory this process can still take: of the machine, of its control group, of its batch job."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+
+GROUPS, OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
+"""Where Linux says how much the control groups may take, and of which ones this process is."""
+MIB = 2**20
+
+
+def available_memory() -> int:
+    """Bytes that can still be allocated.
+
+    It is the least of four: what the machine has free; what the control groups of this process may still take
+    (version 1 and 2, by which containers and most batch systems hold a job); what Slurm has granted to the
+    job; and what is left of the address space (``ulimit -v``).
+    """
+    left = [psutil.virtual_memory().available, *_of_control_groups(), *_of_slurm(), *_of_address_space()]
+    return max(0, int(min(left)))
+
+
+def _of_control_groups() -> Iterator[float]:
+    """What the group of this process, and each that it lies in, may still take; file cache counts as free."""
+    for line in _text(OWN_GROUPS).splitlines():
+        _, controllers, path = [*line.split(":", 2), "", ""][:3]
+        if controllers == "":
+            root, limit, usage, cache = GROUPS, "memory.max", "memory.current", "inactive_file"
+        elif "memory" in controllers.split(","):
+            root, limit = GROUPS / "memory", "memory.limit_in_bytes"
+            usage, cache = "memory.usage_in_bytes", "total_inactive_file"
+        else:
+            continue
+        group = root / path.strip("/")
+        for folder in (group, *group.parents):
+            if folder.is_relative_to(root) and (most := _text(folder / limit).strip()).isdigit():
+                reclaimable = re.search(rf"^{cache} (\d+)$", _text(folder / "memory.stat"), re.MULTILINE)
+                used = int(_text(folder / usage).strip() or 0) - int(reclaimable[1] if reclaimable else 0)
+                yield int(most) - used
+
+
+def _of_slurm() -> Iterator[float]:
+    """What Slurm has granted to the job on this node, less what this process has; 0 stands for all of it."""
+    cpus = re.match(r"\d+", os.environ.get("SLURM_CPUS_ON_NODE", ""))
+    grants = {"SLURM_MEM_PER_NODE": 1, "SLURM_MEM_PER_CPU": int(cpus[0]) if cpus else 1}
+    for name, times in grants.items():
+        granted = os.environ.get(name, "")
+        if granted.isdigit() and int(granted) > 0:
+            yield int(granted) * times * MIB - psutil.Process().memory_info().rss
+
+
+def _of_address_space() -> Iterator[float]:
+    try:
+        import resource
+    except ImportError:  # Windows has none
+        return
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY:
+        yield most - psutil.Process().memory_info().vms
+
+
+def _text(file: Path) -> str:
+    """The content of a file; nothing where there is none."""
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return ""

@@ -1,0 +1,109 @@
+"""Fluids that rest in a tank or a channel begin with the pressure of their weight.
+
+Gravity that sets in at once makes a column bounce: its pressure swings between 0 and 2 ρ g (H - z) with the
+period 4 H/c, and a thin fluid damps that in no time that anyone waits for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..case.model import Case
+from ..kernels.nodes import OPEN
+from .grid import Grid
+from .particles import Group, Particles
+
+CLOSE = 1e-6
+"""Cells by which a body may miss a wall or another body, by rounding."""
+LEAST_RATIO = 0.5
+"""Volume ratio down to which an equation of state is asked for a pressure."""
+HALVINGS = 50
+
+
+def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
+    """Give particles at rest the volume ratio of hydrostatic pressure, p J = g Σ (mass above)/area.
+
+    Only where that is a state of rest: fluids in level layers that fill the domain from wall to wall, or
+    from seam to seam, on a closed face that gravity points to, and have no velocity. Positions stay as they
+    are, those of the liquid if it could not be compressed; J p, and not p, is what nodes are in balance with,
+    since forces are mapped with the volumes J V0.
+
+    Returns:
+        Whether the particles were changed.
+    """
+    axis = _vertical(case, grid)
+    fluid = all(group.law.uses_equation_of_state for group in particles.groups)
+    if axis is None or not fluid or particles.velocity.any():
+        return False
+    weight = _weight_above(case, grid, particles, axis)
+    if weight is None:
+        return False
+    ratio = np.empty_like(weight)
+    for group in particles.groups:
+        found = _ratio_under(group, weight[group.part])
+        if found is None:
+            return False
+        ratio[group.part] = found
+    particles.volume_ratio[:] = ratio
+    particles.volume[:] = ratio * particles.initial_volume
+    for group in particles.groups:
+        particles.pressure[group.part] = group.pressure(ratio[group.part])
+    return True
+
+
+def _vertical(case: Case, grid: Grid) -> int | None:
+    """The one axis along which gravity pushes on a closed face, all others being closed or without ends."""
+    gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
+    axes = np.flatnonzero(gravity)
+    if len(axes) != 1:
+        return None
+    axis = int(axes[0])
+    closed = grid.faces != OPEN
+    floor = closed[axis, 0 if gravity[axis] < 0 else 1]
+    return axis if floor and np.delete(closed, axis, axis=0).all() else None
+
+
+def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np.ndarray | None:
+    """g Σ (mass above)/area at every particle, Pa; None where the bodies are not level layers."""
+    p, across = particles, [a for a in range(grid.dim) if a != axis]
+    pull = float(case.gravity_vector[axis])
+    slack = CLOSE * grid.cell_size
+    height = p.position[:, axis] if pull < 0 else grid.extent[axis] - p.position[:, axis]
+    area = np.prod([grid.extent[a] for a in across])
+    if case.space_.radial:
+        area = np.pi * grid.extent[0] ** 2
+    layers = []  # bottom, top, mass per area and height, and particles of every body
+    for body in np.unique(p.body):
+        of_body = p.body == body
+        low = (p.position - p.half_size)[of_body].min(axis=0)
+        high = (p.position + p.half_size)[of_body].max(axis=0)
+        if (low[across] > slack).any() or (high[across] < grid.extent[across] - slack).any():
+            return None
+        half = p.half_size[of_body, axis]
+        bottom, top = (height[of_body] - half).min(), (height[of_body] + half).max()
+        # A body whose height is no whole number of rows is off by one of them at the most.
+        filled = p.initial_volume[of_body].sum() / area
+        if abs(filled - (top - bottom)) > 2 * half.max():
+            return None
+        layers.append((bottom, top, p.mass[of_body].sum() / (area * (top - bottom)), of_body))
+    layers.sort(key=lambda layer: layer[0])
+    weight, above, ceiling = np.zeros(len(p)), 0.0, None
+    for bottom, top, density, of_body in reversed(layers):
+        if ceiling is not None and abs(top - ceiling) > slack:
+            return None
+        weight[of_body] = above + abs(pull) * density * (top - height[of_body])
+        above += abs(pull) * density * (top - bottom)
+        ceiling = bottom
+    return weight if ceiling is not None and abs(ceiling) < slack else None
+
+
+def _ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
+    """J at which p J is a weight, by bisection; None if the equation of state has none."""
+    low, high = np.full(len(weight), LEAST_RATIO), np.ones(len(weight))
+    if not (group.pressure(low) * low >= weight).all():
+        return None
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        heavy = group.pressure(middle.copy()) * middle >= weight
+        low, high = np.where(heavy, middle, low), np.where(heavy, high, middle)
+    return (low + high) / 2

@@ -1,0 +1,228 @@
+"""T500 and rest: found in the steps, whatever is recorded; and what a run says at its end."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray
+from test_cli import status
+
+import mpmkit
+from mpmkit.running.milestones import LOOKS, Milestones
+from mpmkit.running.setting import setting
+from mpmkit.solver.simulation import Simulation
+
+CASES = Path(__file__).parents[1] / "cases"
+CAKE = {
+    "name": "cake",
+    "space": "axisymmetric",
+    "until": 0.2,
+    "grid": {"cell_size": 0.02, "domain": {"r": [0, 0.4], "z": [0, 0.12]}, "faces": {"z_min": "slip"}},
+    "bodies": [
+        {
+            "shape": {"kind": "cylinder", "radius": 0.24, "height": 0.1},
+            "material": {
+                "law": "bingham-evp", "density": 2000, "yield_stress": 50, "plastic_viscosity": 20,
+                "sound_speed": {"factor": 10},
+            },
+        }
+    ],
+    "output": {"report": False},
+}  # fmt: skip
+"""A flat cylinder, 0.48 m wide, that spreads beyond 0.5 m within 0.1 s."""
+
+
+def cake(**output):
+    return mpmkit.parse_case(CAKE | {"output": {"report": False} | output})
+
+
+def scripted(spread, speed=lambda t: 1.0, step=0.01, height=0.1):
+    """A stand-in for a simulation, whose spread and RMS speed follow functions of time."""
+    scene = SimpleNamespace(time=0.0, steps=0, case=SimpleNamespace(height=height))
+    scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)))
+    scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time))
+    milestones = Milestones(scene)
+
+    def go(steps):
+        for _ in range(steps):
+            scene.particles.velocity[:, 0] = speed(scene.time)
+            milestones.watch()
+            scene.time += step
+            scene.steps += 1
+        scene.particles.velocity[:, 0] = speed(scene.time)
+        milestones.watch()
+
+    return scene, milestones, go
+
+
+@pytest.fixture(scope="module")
+def every_step():
+    return mpmkit.run(cake(history_interval=1e-5 * 20))
+
+
+class TestT500:
+    @pytest.mark.parametrize("interval", [0.001, 0.01, 0.05, 0.2])
+    def test_does_not_depend_on_what_is_recorded(self, every_step, interval):
+        found = mpmkit.run(cake(history_interval=interval))
+        assert found.attrs["t500"] == pytest.approx(every_step.attrs["t500"], abs=1e-12)
+        for name in ("final_spread", "final_slump", "final_height", "final_spread_rate"):
+            assert found.attrs[name] == every_step.attrs[name]
+
+    def test_is_where_a_history_of_all_steps_rises_to_it(self, every_step):
+        rows = every_step.spread_diameter.values
+        after = int(np.argmax(rows >= 0.5))
+        time = every_step.time.values[after - 1 : after + 1]
+        assert np.diff(time) < 1.01 * every_step.time_step.values[after]  # two steps that follow each other
+        assert every_step.attrs["t500"] == pytest.approx(np.interp(0.5, rows[after - 1 : after + 1], time))
+
+    def test_is_linear_between_two_steps(self):
+        _, milestones, go = scripted(lambda t: 0.4 + 0.1 * t)
+        go(130)
+        assert milestones.t500() == pytest.approx(1.0, abs=1e-12)
+
+    def test_a_jump_between_two_looks_is_not_missed(self):
+        _, milestones, go = scripted(lambda t: 0.3 if t < 0.55 else 0.7)
+        go(2 * LOOKS * 3)
+        assert 0.4 < milestones.t500() <= 0.6
+
+    @pytest.mark.parametrize("spread", [lambda t: 0.6 + t, lambda t: 0.4, lambda t: np.nan])
+    def test_what_never_rises_to_it_has_none(self, spread):
+        _, milestones, go = scripted(spread)
+        go(100)
+        milestones.finish()
+        assert milestones.t500() is None
+
+    def test_what_the_guards_have_not_seen_is_not_trusted(self):
+        """They look every 20 steps; the crossing is in step 51, and the stop in 55 or in 65."""
+        scene, milestones, go = scripted(lambda t: 0.4 if t < 0.505 else 9.0)
+        go(40)
+        milestones._seen.close = 1.0
+        go(15)
+        assert milestones.t500() is not None
+        assert milestones.t500(trusted=False) is None
+        scene.steps = 65
+        assert milestones.t500(trusted=False) is not None
+
+    def test_goes_on_from_a_checkpoint(self):
+        """At any step, before and after the crossing: the same numbers as without a stop."""
+        whole = mpmkit.run(cake()).attrs
+        for stop in (31, 150, 333):
+            simulation = Simulation(cake())
+            milestones = Milestones(simulation)
+            milestones.watch()
+            while simulation.time < 0.2 * (1 - 1e-9):
+                simulation.advance(0.2 - simulation.time)
+                milestones.watch()
+                if simulation.steps == stop:
+                    state = {name: array.copy() for name, array in milestones.state().items()}
+                    milestones = Milestones(simulation)
+                    milestones.restore(state)
+            milestones.finish()
+            assert milestones.t500() == whole["t500"]
+            assert milestones.spreading == whole["final_spread_rate"]
+
+
+class TestRest:
+    def test_is_when_neither_speed_nor_spread_go_on(self):
+        """The speed falls below a hundredth of its largest at t = 1.84 s, the rate of the spread earlier."""
+        speed = lambda t: min(1.0, 10 * t) * np.exp(-2.5 * t)  # noqa: E731
+        _, milestones, go = scripted(lambda t: 0.3 + 0.1 * (1 - np.exp(-5 * t)), speed, step=1e-3)
+        go(1800)
+        assert milestones.at_rest_since is None
+        go(600)
+        largest = speed(0.1)
+        slow = np.log(1 / (0.01 * largest)) / 2.5
+        assert milestones.at_rest_since == pytest.approx(slow, abs=0.025)
+
+    def test_what_creeps_is_not_at_rest(self):
+        _, milestones, go = scripted(lambda t: 0.3 + 0.004 * t, lambda t: 1.0 if t < 0.5 else 1e-3, step=1e-3)
+        go(5000)
+        assert milestones.at_rest_since is None
+        assert milestones.spreading == pytest.approx(0.004)
+
+    def test_an_elastic_wobble_is_rest(self):
+        """0.1 mm of the spread to and fro, at 8 mm/s, of what moved at 1 m/s."""
+        _, milestones, go = scripted(
+            lambda t: 0.3 + 1e-4 * np.sin(80 * t), lambda t: 1.0 if t < 0.5 else 4e-3, step=1e-3
+        )
+        go(1000)
+        assert milestones.at_rest_since == pytest.approx(0.5, abs=0.025)
+
+    def test_a_moment_without_motion_is_not_rest(self):
+        """A vibration stands still twice in a period."""
+        _, milestones, go = scripted(lambda t: 0.3, lambda t: np.cos(np.pi * t), step=1e-3, height=1.0)
+        go(500)
+        assert milestones.at_rest_since is None
+
+    def test_of_a_slump(self):
+        """It falls, and comes to rest long before the end; from then on hardly any energy is left."""
+        changes = ["grid.cell_size=0.03", 'grid.domain={"r": [0, 0.36], "z": [0, 0.33]}', "until=2.1"]
+        history = mpmkit.run(mpmkit.load_case(CASES / "slump.json", [*changes, "output.report=false"]))
+        since = history.attrs["at_rest_since"]
+        assert 1.0 < since < 1.8
+        still = history.time.values >= since
+        energy = history.kinetic_energy.values
+        assert energy[still].max() <= 1.1e-4 * energy.max()
+        spread = history.spread_diameter.values
+        assert np.ptp(spread[still]) < 1.5e-3
+        assert spread[still][0] > 0.5
+        assert abs(history.attrs["final_spread_rate"]) < 1e-2
+
+    def test_what_still_flows_is_said_to(self, every_step, tmp_path, capsys):
+        (tmp_path / "cake.json").write_text(json.dumps(CAKE))
+        arguments = ["--until", "0.1", "--out", tmp_path / "run"]
+        assert status("run", tmp_path / "cake.json", *arguments) == 0
+        summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+        assert summary["at_rest_since"] is None
+        before = (every_step.time > 0.095) & (every_step.time < 0.1)
+        rate = np.polyfit(every_step.time[before], every_step.spread_diameter[before], 1)[0]
+        assert summary["final_spread_rate"] == pytest.approx(rate, rel=0.05)
+        said = capsys.readouterr()
+        sentence = f"still spreading, {summary['final_spread_rate'] * 1e3:.3g} mm/s"
+        assert f"{summary['final_spread'] * 1e3:.1f} mm, {sentence}\n" in said.out
+        assert sentence in (tmp_path / "run" / "run.log").read_text()
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("said")
+    (directory / "cake.json").write_text(json.dumps(CAKE | {"until": 0.1}))
+    assert status("run", directory / "cake.json", "--out", directory / "run", "--quiet") == 0
+    return directory / "run"
+
+
+class TestWhatIsSaid:
+    def test_the_log_has_command_versions_setting_and_results(self, run):
+        log = (run / "run.log").read_text()
+        summary = json.loads((run / "summary.json").read_text())
+        assert f"mpmkit {mpmkit.__version__}, numpy {np.__version__}" in log
+        assert "command: " in log
+        assert "law bingham-evp (mpmkit " in log
+        assert "floor: z_min is free slip" in log
+        assert "a T500 measured in a laboratory also includes the time in which the cone is lifted" in log
+        assert f"t500 = {summary['t500']:.6g} s, final_spread = {summary['final_spread']:.6g} m" in log
+        assert log.index("command") < log.index("floor") < log.index("t500")
+
+    def test_the_numbers_are_attributes_of_the_history(self, run):
+        summary = json.loads((run / "summary.json").read_text())
+        with xarray.open_dataset(run / "history.nc") as history:
+            for name in summary["units"]:
+                value = summary[name]
+                assert history.attrs[name] == (pytest.approx(np.nan, nan_ok=True) if value is None else value)
+        assert 0.02 < history.attrs["t500"] < 0.1
+
+    @pytest.mark.parametrize(
+        ("faces", "floor"),
+        [
+            ({"z_min": "stick"}, "stick, so that the material does not slide on it"),
+            ({"z_min": {"kind": "friction", "coefficient": 0.4}}, "friction, with the coefficient 0.4"),
+            ({}, None),
+        ],
+    )
+    def test_each_floor_has_its_words(self, faces, floor):
+        said = setting(mpmkit.parse_case(CAKE | {"grid": CAKE["grid"] | {"faces": faces}}))
+        assert [line for line in said if line.startswith("floor")] == (
+            [] if floor is None else [f"floor: z_min is {floor}"]
+        )
