@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from statistics import median
 
@@ -47,6 +48,7 @@ def seconds(run, *arguments) -> float:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
     a, b, c = (np.ones(LENGTH) for _ in range(3))
     out = np.zeros(16)
     print("| threads | triad, GB/s | multiply-adds of vectors, G/s | GFlop/s |")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import copy
 import time
 from dataclasses import replace
@@ -109,6 +110,7 @@ def overhead() -> None:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
     memory()  # first, while there is nothing that could be used again
     overhead()
     threads()

@@ -315,10 +315,11 @@ def test_the_commands_run_the_case_as_it_was_asked_for(monkeypatch, tmp_path, ca
     assert written.bodies[0].material.density == 1900
 
 
-def test_the_command_that_goes_on_with_a_run_can_be_typed_as_it_stands():
-    directory = SimpleNamespace(path=Path("runs/it's mine"))
+def test_the_command_that_goes_on_with_a_run_can_be_typed_as_it_stands(tmp_path):
+    (tmp_path / "step_000000000001.checkpoint").touch()
+    directory = SimpleNamespace(path=Path("runs/it's mine"), checkpoints=tmp_path)
     stopped = SimpleNamespace(simulation=SimpleNamespace(time=1.0), directory=directory)
-    said = _interrupted(stopped, saved=True)
+    said = _interrupted(stopped)
     typed = shlex.split(said.partition("go on with: ")[2])
     assert typed == ["mpmkit", "run", "--resume", "runs/it's mine"]
 

@@ -105,7 +105,7 @@ def test_a_case_that_does_not_fit_into_the_job_is_refused(machine, monkeypatch):
     require_memory(parse_case(data))
     monkeypatch.setenv("SLURM_MEM_PER_NODE", str(psutil.Process().memory_info().rss // 2**20 + 64))
     with pytest.raises(
-        CaseError, match=r"GiB of memory, but this machine has 0\.06\d* GiB left for this run"
+        CaseError, match=r"GiB of memory, but 0\.06\d* GiB is left for this run by what Slurm has granted"
     ):
         require_memory(parse_case(data))
 

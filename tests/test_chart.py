@@ -174,16 +174,21 @@ def test_none_has_finished(dataset):
         chart(dataset.isel(member=slice(5, None)), "spread_diameter")
 
 
-@pytest.mark.parametrize("holds", ["nothing", "text", "another"])
-def test_a_directory_without_a_study_is_status_2(tmp_path, monkeypatch, capsys, holds):
+@pytest.mark.parametrize("holds", ["nothing", "text", "another", "half of one"])
+def test_a_directory_without_a_study_is_status_2(dataset, tmp_path, monkeypatch, capsys, recwarn, holds):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s").mkdir()
     if holds == "text":
         (tmp_path / "s" / "results.nc").write_text("no NetCDF")
+    if holds == "half of one":
+        dataset.to_netcdf(tmp_path / "s" / "results.nc")
+        whole = (tmp_path / "s" / "results.nc").read_bytes()
+        (tmp_path / "s" / "results.nc").write_bytes(whole[: len(whole) // 2])
     if holds == "another":
         xarray.Dataset({"x": ("y", [1.0])}).to_netcdf(tmp_path / "s" / "results.nc")
     assert status("chart", "s") == 2
     assert "'s' must be the directory of a study that was run" in one_line(capsys)
+    assert [str(warning.message) for warning in recwarn] == []
 
 
 def test_the_front_is_printed_and_drawn(dataset, tmp_path, monkeypatch, capsys):
@@ -205,7 +210,15 @@ def test_the_front_is_printed_and_drawn(dataset, tmp_path, monkeypatch, capsys):
     assert picture.startswith(b"\x89PNG")
     assert len(picture) > 10_000
     assert status("chart", "s", "--reference", "2.0", "--out", "there.png") == 0
-    assert (tmp_path / "there.png").stat().st_size > 10_000
+    there = tmp_path / "there.png"
+    assert there.stat().st_size > 10_000
+    there.write_bytes(b"of somebody else")
+    capsys.readouterr()
+    assert status("chart", "s", "--out", "there.png") == 2
+    assert "'there.png' exists: give --overwrite to replace it" in one_line(capsys)
+    assert there.read_bytes() == b"of somebody else"
+    assert status("chart", "s", "--out", "there.png", "--overwrite") == 0
+    assert there.stat().st_size > 10_000
     capsys.readouterr()
     assert status("chart", "s", "--out", "no/where.png") == 4
     assert "cannot write 'no/where.png'" in one_line(capsys)

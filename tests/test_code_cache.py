@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import textwrap
 import time
 from collections import Counter
 from pathlib import Path
 
 import numba
-import numpy as np
 import pytest
 
-from mpmkit.kernels import code_cache
-from mpmkit.kernels.code_cache import IN_USE, KEPT, cached_code, digest, forget_old_generations
+from mpmkit.kernels import code_folders
+from mpmkit.kernels.code_cache import cached_code, digest
+from mpmkit.kernels.code_folders import FOLDER, IN_USE, KEPT, MARKER, TAG, VERSIONS, forget_generations, write
 
 
 @pytest.fixture
@@ -56,12 +57,14 @@ def test_the_digest_is_of_sources_and_versions_alone(folder):
     assert digest((folder / "a.py",)) != digest((folder / "b.py",))
 
 
-def generations(root, ages, name="plug"):
+def generations(root, ages, name="plug", marker=TAG):
     """Folders of compiled code last used so many seconds ago."""
     for i, age in enumerate(ages):
         path = root / f"{name}-{i:016x}"
         path.mkdir()
-        (path / "kernel.nbi").write_bytes(b"code")
+        (path / "kernel.key.code").write_bytes(b"code")
+        if marker is not None:
+            (path / MARKER).write_text(marker)
         os.utime(path, (time.time() - age,) * 2)
 
 
@@ -71,30 +74,60 @@ def left(root):
 
 def test_old_generations_are_forgotten_but_for_the_last_few(tmp_path):
     generations(tmp_path, [IN_USE + 60 * i for i in reversed(range(1, KEPT + 4))])
-    forget_old_generations(tmp_path, "plug")
+    forget_generations(tmp_path, "plug")
     assert left(tmp_path) == {f"plug-{i:016x}" for i in range(3, KEPT + 3)}
 
 
 def test_generations_that_a_run_may_be_using_are_kept(tmp_path):
     generations(tmp_path, [60 * i for i in range(KEPT + 3)] + [IN_USE + 60, IN_USE - 60])
-    forget_old_generations(tmp_path, "plug")
+    forget_generations(tmp_path, "plug")
     assert left(tmp_path) == {f"plug-{i:016x}" for i in range(KEPT + 5) if i != KEPT + 3}
 
 
 def test_generations_of_other_packages_are_left_alone(tmp_path):
     for name in ("plug", "plug-in", "plugs"):
         generations(tmp_path, [2 * IN_USE] * (KEPT + 2), name)
-    forget_old_generations(tmp_path, "plug")
+    forget_generations(tmp_path, "plug")
     names = Counter(name.rpartition("-")[0] for name in left(tmp_path))
     assert names == {"plug": KEPT, "plug-in": KEPT + 2, "plugs": KEPT + 2}
+
+
+@pytest.mark.parametrize("marker", [None, TAG.replace("mpmkit", "another program")])
+def test_a_folder_without_our_marker_is_left_alone(tmp_path, marker):
+    generations(tmp_path, [2 * IN_USE] * (KEPT + 3), marker=marker)
+    forget_generations(tmp_path, "plug")
+    assert len(left(tmp_path)) == KEPT + 3
+
+
+def test_what_a_user_put_into_an_old_generation_stays(tmp_path):
+    generations(tmp_path, [2 * IN_USE] * KEPT + [3 * IN_USE])
+    old = tmp_path / f"plug-{KEPT:016x}"
+    (old / "notes.txt").write_text("of the user's")
+    os.utime(old, (time.time() - 3 * IN_USE,) * 2)
+    forget_generations(tmp_path, "plug")
+    assert left(old) == {"notes.txt", MARKER}
+
+
+def test_what_is_compiled_for_ever_new_constants_is_forgotten(tmp_path):
+    """A constant that is another one in every process must not fill the disk."""
+    generation = tmp_path / "plug-0123456789abcdef"
+    write(generation / "other.key.code", b"code")
+    write(generation / ".kernel.77.code.partial", b"of a process that was killed")
+    for i in range(VERSIONS + 5):
+        write(generation / f"kernel.{i}.code", b"code")
+        os.utime(generation / f"kernel.{i}.code", (time.time() - 2 * IN_USE + i,) * 2)
+    os.utime(generation / ".kernel.77.code.partial", (time.time() - 2 * IN_USE,) * 2)
+    write(generation / "kernel.last.code", b"code")
+    kept = {f"kernel.{i}.code" for i in range(6, VERSIONS + 5)}
+    assert left(generation) == {MARKER, "other.key.code", "kernel.last.code"} | kept
 
 
 def test_a_place_that_cannot_be_written_is_no_place(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
-    assert code_cache.cache_root.__wrapped__() is None
+    assert code_folders.cache_root.__wrapped__() is None
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "new" / "folder"))
-    assert code_cache.cache_root.__wrapped__() == tmp_path / "new" / "folder"
+    assert code_folders.cache_root.__wrapped__() == tmp_path / "new" / "folder" / FOLDER
 
 
 def twice(x):
@@ -102,75 +135,214 @@ def twice(x):
 
 
 def test_without_a_place_code_is_compiled_and_not_kept(monkeypatch):
-    monkeypatch.setattr(code_cache, "cache_root", lambda: None)
+    monkeypatch.setattr(code_folders, "cache_root", lambda: None)
     compiled = cached_code(numba.njit)(twice)
     assert compiled(21) == 42
     assert compiled.stats.cache_path is None
 
 
-def test_the_place_of_other_code_is_left_as_it_was(monkeypatch, tmp_path):
-    before = numba.config.CACHE_DIR
-    monkeypatch.setattr(code_cache, "cache_root", lambda: tmp_path)
-    compiled = cached_code(numba.njit)(twice)
-    assert before == numba.config.CACHE_DIR
-    assert tmp_path in Path(compiled.stats.cache_path).parents
+def test_a_damaged_file_and_a_full_disk_cost_time_and_no_more(monkeypatch, tmp_path):
+    monkeypatch.setattr(code_folders, "cache_root", lambda: tmp_path)
+    assert cached_code(numba.njit)(twice)(21) == 42
+    (file,) = tmp_path.rglob("*.code")
+    file.write_bytes(file.read_bytes()[:100])
+    again = cached_code(numba.njit)(twice)
+    assert again(21) == 42
+    assert not again.stats.cache_hits
+
+    def full(path, content):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(code_folders, "write", full)
+    assert cached_code(numba.njit)(twice)(21.5) == 43.0
 
 
-CONSTANTS = "FACTOR = {}\n"
-HELPER = """
-from mpmkit.kernels.compile import inline
-
-@inline()
-def change(x, factor):
-    return {}
-"""
-CODE = """
-from numba import prange
-from mpmkit.kernels.compile import kernel
-from .constants import FACTOR
-from .helper import change
-
-@kernel()
-def scaled(x, out):
-    for i in prange(len(x)):
-        out[i] = change(x[i], FACTOR)
-"""
 RUN = """
+import os
 import numpy as np
-from plug.code import scaled
+import plug.code
 out = np.empty(3)
-scaled(np.ones(3), out)
-print(*out, sum(scaled.stats.cache_hits.values()), sum(scaled.stats.cache_misses.values()))
+plug.code.late()
+plug.code.scaled(np.ones(3), out)
+stats = plug.code.scaled.stats
+print(out[0], sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
 """
+PLUG = {
+    "plug/__init__.py": "",
+    "plug/viscosity.txt": "50.0",
+    "plug/constants.py": "FACTOR = 2.0\n",
+    "plug/helper.py": """
+        from mpmkit.kernels.compile import inline
+        from .constants import FACTOR
+
+        @inline()
+        def change(x):
+            return FACTOR * x
+    """,
+    "other/__init__.py": "RATE = 3.0\n",
+    "other/inner.py": "WIDTH = 1.0\n",
+    "other/rules.py": """
+        import numba
+        from . import RATE
+
+        @numba.njit
+        def rule(x):
+            return RATE + x
+    """,
+    "plug/code.py": """
+        import os
+        from pathlib import Path
+
+        import numpy as np
+        import other.inner
+        from numba import prange
+        from other.rules import rule
+
+        from mpmkit.kernels.compile import function, kernel
+        from .helper import change
+
+        VISCOSITY = float(Path(__file__).with_name("viscosity.txt").read_text())
+        TABLE = np.array([0.0, float(os.environ.get("TABLE", "1"))])
+        PAIR = (1.0, (int(os.environ.get("PAIR", "0")),))
+        LATE = 0.0
+
+        def late():
+            global LATE
+            LATE = float(os.environ.get("LATE", "0"))
+
+        def power(exponent):
+            @function()
+            def raised(x):
+                return x**exponent
+            return raised
+
+        raised = power(int(os.environ.get("EXPONENT", "1")))
+
+        def maker(inner):
+            @kernel()
+            def scaled(x, out):
+                for i in prange(len(x)):
+                    whole = rule(change(x[i])) * VISCOSITY * TABLE[1] + PAIR[1][0] + LATE
+                    out[i] = inner(whole) * other.inner.WIDTH
+            return scaled
+
+        scaled = maker(raised)
+    """,
+}
+CHANGES = {
+    "a data file": ({"plug/viscosity.txt": "500.0"}, {}, 2500.0),
+    "a constant of another file": ({"plug/constants.py": "FACTOR = 7.0\n"}, {}, 500.0),
+    "a function of another file": ({"plug/helper.py": ("FACTOR * x", "FACTOR - x")}, {}, 200.0),
+    "a constant of another package": ({"other/__init__.py": "RATE = 8.0\n"}, {}, 500.0),
+    "a module of another package": ({"other/inner.py": "WIDTH = 2.0\n"}, {}, 500.0),
+    "a function of another package": ({"other/rules.py": ("RATE + x", "RATE * x")}, {}, 300.0),
+    "an array from the environment": ({}, {"TABLE": "2"}, 500.0),
+    "a tuple from the environment": ({}, {"PAIR": "5"}, 255.0),
+    "a constant that is set later": ({}, {"LATE": "4"}, 254.0),
+    "what a function closes over": ({}, {"EXPONENT": "2"}, 62500.0),
+}
 
 
-def run(folder):
-    """What a fresh process finds: the results, how often compiled code was found, and how often not."""
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")}
+def fresh_run(folder, more=None):
+    """What a fresh process finds: a result, how often compiled code was found, and how often not."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache"), **(more or {})}
     environment["PYTHONPATH"] = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment["PYTHONDONTWRITEBYTECODE"] = "1"  # sources of one length that change within a second
     done = subprocess.run(
         [sys.executable, "-c", RUN], cwd=folder, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    *values, hits, misses = np.array(done.stdout.split(), dtype=float)
-    return values, hits, misses
+    return tuple(map(float, done.stdout.split()))
 
 
-def test_a_change_anywhere_in_a_package_compiles_its_kernels_anew(tmp_path):
-    """A constant and a function of other files, compiled into a kernel; unchanged, nothing is compiled."""
-    package = tmp_path / "plug"
-    package.mkdir()
-    for name, text in (("__init__", ""), ("code", CODE), ("helper", HELPER.format("factor * x"))):
-        (package / f"{name}.py").write_text(text)
-    (package / "constants.py").write_text(CONSTANTS.format(2.0))
-    assert run(tmp_path) == ([2.0] * 3, 0, 1)
-    (package / "constants.py").write_text(CONSTANTS.format(3.0))
-    assert run(tmp_path) == ([3.0] * 3, 0, 1)
-    assert run(tmp_path) == ([3.0] * 3, 1, 0)
-    (package / "helper.py").write_text(HELPER.format("factor + x"))
-    assert run(tmp_path) == ([4.0] * 3, 0, 1)
-    assert sum(path.name.startswith("plug-") for path in (tmp_path / "cache").iterdir()) == 3
+def write_sources(folder, files):
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(textwrap.dedent(text))
+
+
+@pytest.fixture(scope="module")
+def compiled_once(tmp_path_factory):
+    """A package whose kernel takes constants from everywhere, and its code, just compiled."""
+    folder = tmp_path_factory.mktemp("compiled")
+    write_sources(folder, PLUG)
+    assert fresh_run(folder) == (250.0, 0, 1)
+    assert fresh_run(folder) == (250.0, 1, 0)
+    return folder
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_whatever_changes_that_a_kernel_is_compiled_with_compiles_it_anew(change, compiled_once):
+    """The new value is used, wherever it comes from; with the old one back, the old code is found again."""
+    files, environment, expected = CHANGES[change]
+    before = {name: (compiled_once / name).read_text() for name in files}
+    for name, new in files.items():
+        (compiled_once / name).write_text(before[name].replace(*new) if isinstance(new, tuple) else new)
+    try:
+        assert fresh_run(compiled_once, environment) == (expected, 0, 1)
+    finally:
+        for name, text in before.items():
+            (compiled_once / name).write_text(text)
+
+
+@pytest.mark.parametrize(
+    "called", ["numba.njit(cache=True)", "numba.extending.register_jitable", "numba.vectorize"]
+)
+def test_a_kernel_that_calls_what_has_no_key_is_not_kept(called, tmp_path):
+    """Of a plain Python function numba may have any other code; of its own cache it knows the file alone."""
+    source = f"""
+        import numba
+        from numba import prange
+        from mpmkit.kernels.compile import kernel
+
+        def late():
+            pass
+
+        @{called}
+        def other(x):
+            return 5.0 * x
+
+        @kernel()
+        def scaled(x, out):
+            for i in prange(len(x)):
+                out[i] = other(x[i])
+    """
+    write_sources(tmp_path, {"plug/__init__.py": "", "plug/code.py": source})
+    assert [fresh_run(tmp_path), fresh_run(tmp_path)] == [(5.0, 0, 1)] * 2
+
+
+FACTOR = 2.0
+
+
+def changing(x):
+    return FACTOR * x
+
+
+def test_a_constant_that_changes_within_a_process_is_not_kept_as_another(monkeypatch, tmp_path):
+    """numba goes on with the old constant where it has compiled a function: so must nobody else."""
+    monkeypatch.setattr(code_folders, "cache_root", lambda: tmp_path)
+    inner = cached_code(numba.njit)(changing)
+    assert inner(1.0) == 2.0
+    monkeypatch.setitem(globals(), "FACTOR", 3.0)
+    outer = cached_code(numba.njit)(lambda x: inner(x) + 1)
+    assert outer(1.0) == 3.0
+    assert len(list(tmp_path.rglob("*.code"))) == 1
+    assert cached_code(numba.njit)(changing)(1.0) == 3.0
+
+
+def test_nothing_of_the_users_in_the_folder_of_compiled_code_is_touched(tmp_path):
+    """A folder called as our own ones were once deleted, with the results in it."""
+    old = time.time() - 30 * IN_USE
+    for i in range(2 * KEPT):
+        for folder in (f"mpmkit-results{i}", "mpmkit-results", f"plug-{i:016x}"):
+            (tmp_path / "cache" / folder).mkdir(parents=True, exist_ok=True)
+            (tmp_path / "cache" / folder / f"thesis{i}.code").write_text("three years of work")
+            os.utime(tmp_path / "cache" / folder, (old, old))
+    before = sorted((tmp_path / "cache").rglob("*"))
+    write_sources(tmp_path, PLUG)
+    assert fresh_run(tmp_path) == (250.0, 0, 1)
+    assert [path for path in before if not path.exists()] == []
+    assert left(tmp_path / "cache") - {path.name for path in before} == {FOLDER}
 
 
 STEPS = """

@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -64,6 +65,15 @@ def test_a_script_that_computes_when_asked_for_help_is_found(checks, tmp_path):
         "docs/script.py: --help ends with status 0 and no help",
         "docs/script.py: --help changed files",
     ]
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "benchmarks").glob("*.py")), ids=lambda path: path.name)
+def test_a_benchmark_that_is_asked_for_its_help_does_not_compute(script, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", [str(script), "--help"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(script), run_name="__main__")
+    assert "usage:" in capsys.readouterr().out
+    assert ended.value.code == 0
 
 
 def test_numbers_of_the_readme_that_a_run_does_not_have_are_found(checks, tmp_path):

@@ -151,6 +151,9 @@ TWO = {
         box([0, 0.5], [0.5, 1], velocity=[1.0, 0]), box([1, 0.5], [1.5, 1]), (0, 0)
     ),
     "one falls on the other": (box([0, 0], [1, 0.5], RUBBER), box([0.2, 1], [0.5, 1.3], RUBBER), (0, -9.81)),
+    "one falls on another half a cell below": (
+        box([0, 0], [1, 0.5], RUBBER), box([0.2, 0.55], [0.5, 0.85], RUBBER), (0, -9.81)
+    ),
     "a solid on a fluid": (box([0, 0], [1, 0.5], MUD), box([0.2, 0.5], [0.5, 0.8], RUBBER), (0, -9.81)),
     "one slides along the other": (
         box([0, 0], [1, 0.5], RUBBER), box([0, 0.5], [1, 1], RUBBER, velocity=[0.1, 0]), (0, 0)
@@ -202,6 +205,7 @@ MILLIMETRES = [
 UNITS = {
     "a case in millimetres": (MILLIMETRES, "the bodies are 300 m high; usual is 0.001 to 50 m"),
     "with gravity as well": ([*MILLIMETRES, "gravity=[0, -9810]"], "gravity is 9810 m/s²; on earth it is"),
+    "gravity in cm/s2": (["gravity=[0, -981]"], "gravity is 981 m/s²; on earth it is 9.81 m/s²"),
     "density in g/cm3": (["bodies.0.material.density=2.574"], "density is 2.574 kg/m³; usual is 100"),
     "density in kg/mm3": (["bodies.0.material.density=2.574e-6"], "bodies.0.material.density is 2.574e-06"),
     "yield stress in kPa": (["bodies.0.material.yield_stress=0.18891"], "is 0.1889 Pa, 2.5e-05 of ρ g h"),

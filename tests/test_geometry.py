@@ -407,7 +407,11 @@ def test_bad_meshes_are_refused_by_name(tmp_path):
     vertices, faces = icosphere(0.1, 1)
     flat = BLOCK_CORNERS * [1, 1, 0]
     quads = np.concatenate([BLOCK_QUADS[:, [0, 1, 2]], BLOCK_QUADS[:, [0, 2, 3]]])
+    twice = np.concatenate([faces, faces])
+    beside = np.concatenate([CUBE, np.add(CUBE, [0.1, 0, 0])]), np.concatenate([CUBE_FACES, CUBE_FACES + 8])
     for file, words in {
+        write(tmp_path / "twice.stl", vertices, twice): "120 edges belong to more than two triangles",
+        write(tmp_path / "beside.stl", *beside): "5 edges .* shells of it touch there, .* must be united",
         write(tmp_path / "open.stl", vertices, faces[1:]): "not closed",
         write(tmp_path / "flat.ply", flat, quads): "closed",
         text(tmp_path / "words.stl", "these are only words"): "truncated or not an STL file",

@@ -97,7 +97,7 @@ def test_an_object_for_a_face_is_met_with_what_to_write(value, right):
     parse_case(changed(FACE, json.loads(right)))  # it is what may stand there
 
 
-def test_a_kind_of_face_that_there_is_not_is_told_of_with_those_there_are():
+def test_an_unknown_kind_of_face_is_refused_with_the_kinds_there_are():
     text = sentence(parse_case, changed(FACE, {"kind": "moving", "velocity": [1, 0]}))
     assert 'there is no kind of face "moving"; it must be "slip", "stick", "periodic", "open"' in text
     assert FRICTION in text
@@ -122,8 +122,11 @@ NEARLY_JSON = {
     "TOML": ("[grid]\ncell_size = 0.1\n", "line 1, column 1", "TOML begins, and JSON is needed"),
     "no quotes": ("{until: 1}", "line 1, column 2", 'must stand in double quotes: "until"'),
     "Python's True": ('{"a": True}', "line 1, column 7", "True must be written as true"),
-    "half a number": ('{"a": .5}', "line 1, column 7", ".5 is no number of JSON"),
+    "half a number": ('{"a": .5}', "line 1, column 7", ".5 is not a JSON number"),
     "a unit": ('{"a": 5 mm}', "line 1, column 9", "'mm' stands behind a number; all are in SI units"),
+    "a fraction": ('{"a": 1/10}', "line 1, column 8", "'/' stands behind a number; JSON does not calculate"),
+    "a product": ('{"a": [2 * 3]}', "line 1, column 10", "'*' stands behind a number"),
+    "a percentage": ('{"a": 10%}', "line 1, column 9", "'%' stands behind a number"),
     "no comma": ('{"a": 1\n"b": 2}', "line 1, column 8", "a comma is missing"),
     "no end": ('{"a": [1, 2', "line 1, column 12", "1 '}' and 1 ']' must still come"),
 }
@@ -161,6 +164,15 @@ def test_a_key_that_stands_twice_among_many_is_found_at_once(tmp_path):
     begin = time.perf_counter()
     assert "'k99999' stands twice" in sentence(load_case, file)
     assert time.perf_counter() - begin < 2
+
+
+def test_a_file_without_an_end_is_refused(tmp_path, monkeypatch):
+    """/dev/zero was read until the memory was full."""
+    monkeypatch.setattr("mpmkit.case.load.LARGEST", 1000)
+    file = tmp_path / "c.json"
+    for size, said in ((1000, "is not valid JSON"), (1001, "has more than 1,000 characters")):
+        file.write_text("x" * size)
+        assert said in sentence(load_case, file)
 
 
 def test_what_is_said_to_install_is_what_the_extras_hold():

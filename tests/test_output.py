@@ -239,7 +239,9 @@ class TestRunDirectory:
 
     def test_overwriting_deletes_what_a_run_writes_and_nothing_else(self, tmp_path):
         self.fill(RunDirectory(tmp_path / "run"))
-        own = ["notes.txt", "frames/mine.vtu"]
+        own = ["notes.txt", "frames/mine.vtu", "frames/frame_of_mine.vtu", "report/for_the_thesis.png"]
+        own += ["checkpoints/step_by_step.checkpoint"]
+        (tmp_path / "run" / "checkpoints").mkdir()
         for name in own:
             (tmp_path / "run" / name).write_text("the user's own")
         (tmp_path / "run" / ".history.nc.partial").write_text("left by a killed process")

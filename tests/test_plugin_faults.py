@@ -517,7 +517,7 @@ def test_an_order_that_is_sound_runs(calls):
     [("order", "acoustic_fraction"), ("order", "viscous_fraction"), ("velocity", "acoustic_fraction")],
 )
 def test_a_part_of_the_limit_that_is_none(kind, name, fraction):
-    """It was told as a step that is too long, and the case was asked to shorten it."""
+    """It was reported as a step that is too long, and the case was asked to shorten it."""
 
     class Update(VelocityUpdate):
         name = "of-the-tests"

@@ -62,6 +62,13 @@ def test_a_lock_that_nobody_holds_does_not_block(tmp_path):
         pass
 
 
+def test_a_file_of_the_users_that_is_called_like_the_lock_stays(tmp_path):
+    (tmp_path / ".lock").write_text("of another program")
+    with RunDirectory(tmp_path).claimed():
+        pass
+    assert (tmp_path / ".lock").read_text() == "of another program"
+
+
 def test_what_is_not_a_run_gets_no_lock_either(tmp_path):
     (tmp_path / "thesis.tex").write_text("")
     for overwrite in (False, True):

@@ -1,4 +1,4 @@
-"""A report that fails is told of, and changes nothing of how a run ended."""
+"""A report that fails is reported in a sentence, and changes nothing of how a run ended."""
 
 import json
 

@@ -152,7 +152,21 @@ def test_the_command_prints_and_draws(tmp_path, monkeypatch, capsys):
     rows = json.loads(capsys.readouterr().out)
     assert [row["order"] for row in rows] == ["usl", "musl"]
     assert {"fraction", "unstable", "broken", "limit", "declared"} <= set(rows[0])
-    assert (tmp_path / "map" / "stability.png").stat().st_size > 10_000
+    map_ = tmp_path / "map" / "stability.png"
+    assert map_.stat().st_size > 10_000
+    map_.write_bytes(b"of an earlier search")
+    with pytest.raises(SystemExit) as stop:
+        main(["stability", "column.json", "--order", "usl,musl", "--out", "map"])
+    assert stop.value.code == 2
+    assert capsys.readouterr().err == (
+        "mpmkit: 'map/stability.png' exists: give --overwrite to replace it, or write elsewhere with --out\n"
+    )
+    assert map_.read_bytes() == b"of an earlier search"
+    coarse = ["--until", "0.001", "--overwrite", "--json"]
+    with pytest.raises(SystemExit) as stop:
+        main(["stability", "column.json", "--out", "map", *coarse])
+    assert stop.value.code == 0
+    assert map_.stat().st_size > 10_000
     with pytest.raises(SystemExit) as stop:
         main(["stability", "column.json", "--order", "nothing"])
     assert stop.value.code == 2

@@ -21,7 +21,7 @@ from mpmkit.solver.stateful import Stateful, restore, state_of
 
 CASES = Path(__file__).parents[1] / "cases"
 MADE_OF_THE_CASE = {
-    "Simulation": {"case", "grid", "measures", "_first_sound_speeds"},
+    "Simulation": {"case", "grid", "measures", "_first_sound_speeds", "blaming"},
     "Group": {"law", "equation_of_state"},
     "SceneOperations": {"scheme", "grid", "cell_size", "gravity", "radial", "_scatter", "_gather"},
     "Window": {"grid"},
@@ -31,12 +31,13 @@ MADE_OF_THE_CASE = {
     "Relaxation": {"_treatment"},
     "EnergyBalance": {"_downwards", "_along"},
     "Recorder": {"directory"},
-    "History": {"attributes", "_columns", "_axes"},
+    "History": {"attributes", "_columns", "_axes", "_variables"},
     "FrameWriter": {"directory", "_planar"},
     "Schedule": {"_times"},
 }
 """Attributes by class that are never written again; every other one is poisoned."""
 NOT_COMPARED = {
+    "Simulation": {"blaming"},  # plug-ins, and a function of this very simulation
     "SceneOperations": {"_tables"},  # memory that sorting uses as well; weight and gradient lie in it
     "Window": {"_stores", "_capacity"},  # memory, as much as was ever needed; nodes, pairs, average lie in it
     "History": {"_next_flush"},  # wall time

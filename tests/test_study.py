@@ -1,7 +1,7 @@
 """Studies: their members, their dataset, what fails among them, and what is not run again."""
 
 import json
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -11,13 +11,14 @@ from studies import CASE, LEAVES, NOTHING, Now, status, study
 import mpmkit
 from mpmkit.case import parse_case
 from mpmkit.study import collect, execute, members_of
+from mpmkit.study.execute import Unfinished
 from mpmkit.study.store import Store
 
 
-def run(path, given, executor=None, **options):
+def run(path, given, executor=None, overwrite=False, **options):
     """Run a study into a directory; returns its dataset, as it is read from there, and its executor."""
     executor = executor or Now()
-    members, store = members_of(given), Store(path)
+    members, store = members_of(given), Store(path, overwrite)
     store.open(given)
     execute(members, store, executor=executor, **options)
     store.write(collect(given, members, store))
@@ -130,12 +131,14 @@ def test_what_has_finished_is_not_run_again_and_what_has_changed_or_failed_is(tm
     assert [data["bodies"][0]["shape"]["upper"] for data in executor.ran] == [[0.201, 0.001]]
     kept = {"member": ["one", "two", "gone"]}
     xarray.testing.assert_equal(first.sel(kept), again.sel(kept))
-    changed, executor = run(tmp_path, study(members=members | {"two": {"until": 0.012}, "bad": {}}))
+    changed, executor = run(
+        tmp_path, study(members=members | {"two": {"until": 0.012}, "bad": {}}), overwrite=True
+    )
     assert sorted(data["until"] for data in executor.ran) == [0.012, 0.02]
     assert changed.fate.values.tolist() == ["finished", "finished", "particle-outside", "finished"]
     assert float(changed.sel(member="two").simulated_time) == pytest.approx(0.012)
     # Another order of the same members, or another name of theirs, is another matter.
-    _, executor = run(tmp_path, study(members={"gone": LEAVES, "one": {}, "uno": {}}))
+    _, executor = run(tmp_path, study(members={"gone": LEAVES, "one": {}, "uno": {}}), overwrite=True)
     assert len(executor.ran) == 1
 
 
@@ -197,6 +200,27 @@ def test_an_error_on_the_way_is_the_fate_of_its_member(tmp_path):
     dataset, _ = run(tmp_path, study(members={"one": {"until": 0.002}, "two": {"until": 0.003}}), Refuses())
     assert dataset.fate.values.tolist() == ["failed", "finished"]
     assert dataset.sentence.values.tolist()[0] == "KeyError: 'no such key'"
+
+
+def test_an_executor_that_gives_up_leaves_its_members_to_the_next_time(tmp_path):
+    """As that of a cluster whose scheduler has died."""
+
+    class GivesUp(Now):
+        def submit(self, work, /, *arguments, **options):
+            if len(self.ran) < 1:
+                return super().submit(work, *arguments, **options)
+            future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    given = study(vary={"until": [0.001, 0.002, 0.003]})
+    with pytest.raises(Unfinished, match=r"gave up 2 of 3 members \(0\.002, 0\.003\)") as stop:
+        run(tmp_path, given, GivesUp())
+    assert stop.value.exit_status == 1
+    dataset, executor = run(tmp_path, given)
+    assert sorted(data["until"] for data in executor.ran) == [0.002, 0.003]
+    assert (dataset.fate == "finished").all()
 
 
 def test_loading_code_is_not_part_of_the_cost(tmp_path):

@@ -108,6 +108,39 @@ BAD = {
         {"case": "tiny.json", "vary": {"until": list(range(1, 201)), "gravity": list(range(200))}},
         "the study has 40000 members; it may have 10,000 at most",
     ),
+    "two changes of one place": (
+        {
+            "case": "tiny.json",
+            "vary": {"scheme.shape.domain": ["fixed", "stretch"], "scheme.shape": ["cpgimp"]},
+        },
+        "vary.scheme.shape.domain and vary.scheme.shape change one place of the case: "
+        "scheme.shape.domain is a part of scheme.shape; vary it in one of them only",
+    ),
+    "a named set and a dimension": (
+        {
+            "case": "tiny.json",
+            "vary": {"until": [1, 2], "end": {"late": {"gravity": [0, -1], "until": 3}, "early": {}}},
+        },
+        "vary.until and vary.end change one place of the case: both set until",
+    ),
+    "two named sets": (
+        {
+            "case": "tiny.json",
+            "vary": {
+                "one": {"a": {"bodies.0.velocity": [1, 0]}},
+                "two": {"b": {"until": 1}, "c": {"bodies.00": {}}},
+            },
+        },
+        "vary.one and vary.two change one place of the case: bodies.0.velocity is a part of bodies.00",
+    ),
+    "a common value that none would have": (
+        {
+            "case": "tiny.json",
+            "common": {"scheme.shape.domain": "stretch"},
+            "vary": {"scheme.shape": ["cpgimp", "linear"]},
+        },
+        "common.scheme.shape.domain is a part of vary.scheme.shape, which replaces it in every member",
+    ),
     "numbers that are none": ('{"case": "tiny.json", "vary": {"until": [NaN]}}', "vary.until.0: NaN is not"),
 }
 
@@ -202,12 +235,34 @@ def test_bad_vary(options, sentence):
             "--set bodies.7=1: bodies is a list of 1",
         ),
         (["gone.json", "--vary", "until=1"], "the case file cannot be read"),
+        (
+            ["tiny.json", "--vary", "scheme.shape.domain=fixed,stretch", "--vary", "scheme.shape=cpgimp"],
+            "--vary: vary.scheme.shape.domain and vary.scheme.shape change one place of the case",
+        ),
+        (
+            ["tiny.json", "--vary", "scheme.shape=cpgimp", "--set", "scheme.shape.domain=stretch"],
+            "--set scheme.shape.domain is a part of --vary scheme.shape, which replaces it in every member",
+        ),
     ],
 )
 def test_bad_input_of_compare(arguments, sentence, here, capsys):
     assert status("compare", *arguments) == 2
     assert sentence in one_line(capsys)
     assert [path.name for path in here.iterdir()] == ["tiny.json"]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_order_of_changes_does_not_matter(turned):
+    """A part of a place stays as it was said, whether it is said before the place or after it."""
+    said = [("scheme.shape", "cpgimp"), ("scheme.shape.domain", "fixed")]
+    changes = dict(reversed(said) if turned else said)
+    (member,) = members_of(study(members={"a": changes}))
+    assert member.case.scheme.shape.domain == "fixed"
+
+
+def test_a_member_overrides_what_all_have():
+    given = study(common={"until": 1.0}, members={"a": {}, "long": {"until": 2.0}})
+    assert [member.case.until for member in members_of(given)] == [1.0, 2.0]
 
 
 def test_compare(here, capsys, monkeypatch):
@@ -223,7 +278,7 @@ def test_compare(here, capsys, monkeypatch):
     assert shown.out.splitlines()[-1] == "results in runs/compare-a-case"
     assert shown.out.count("| finished |") == 2
     assert shown.out.count("| particle-outside at 0.00") == 2
-    assert sum(line.startswith("usl, [0, 0]: finished, 0.") for line in shown.err.splitlines()) == 1
+    assert sum(line.startswith("usl, [0, 0]: finished, ") for line in shown.err.splitlines()) == 1
     with xarray.open_dataset(here / "runs" / "compare-a-case" / "results.nc") as dataset:
         assert dict(dataset.fate.sizes) == {"scheme.order": 2, "bodies.0.velocity": 2}
         assert dataset["bodies.0.velocity"].values.tolist() == ["[0, 0]", "[200, 0]"]

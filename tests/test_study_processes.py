@@ -155,10 +155,14 @@ def test_study_on_the_command_line(tmp_path, scratch, monkeypatch, capfd):
     changes = {"bodies.0.shape.upper": [0.201, 0.001]}
     content = {"case": CASE, "members": {"good": {}, "bad": changes}, "threads": 2}
     (tmp_path / "s.json").write_text(json.dumps(content), encoding="utf-8")
-    assert status("study", "s.json", "--workers", "2") == 0
+    assert status("study", "s.json", "--workers", "2") == 1
     shown, said = capfd.readouterr()
     assert shown.splitlines()[-1] == "results in runs/s"
     assert "bad: failed, 0.0 s: bodies.0.shape holds no particle" in said
     assert "good: finished, " in said
+    assert said.splitlines()[-1] == (
+        "mpmkit: 1 of 2 members (bad) failed; member.json of each in 'runs/s/members' says why, and the same "
+        "command runs them again"
+    )
     with xarray.open_dataset(next(tmp_path.glob("runs/s/members/good-*/history.nc"))) as history:
         assert json.loads(history.attrs["machine"])["threads"] == 2

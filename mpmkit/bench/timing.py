@@ -47,7 +47,7 @@ def time_scene(scene: BenchScene, threads: int | None = None, seconds: float = 5
 
     Args:
         scene: one of ``SCENES``.
-        threads: threads to use; as many as pay off unless told.
+        threads: threads to use; default: as many as pay off.
         seconds: for how long.
     """
     return timed(in_mid_flow(scene), scene.name, threads, seconds)

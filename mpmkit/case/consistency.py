@@ -190,7 +190,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
 
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
-    """Parameters that are numbers each may make a wave that is none, and a step of zero."""
+    """Parameters that are numbers each may make a wave speed that is not finite, and a step of zero."""
     law, sound_speed = material.constitutive_law, case.sound_speed(material)
     with blaming_plugins([("law", law)]):
         try:

@@ -1,4 +1,4 @@
-"""The condition on a face of the grid, and what to write for an object that is none."""
+"""The condition on a face of the grid, and what to write for an object that is not one."""
 
 from __future__ import annotations
 

@@ -20,6 +20,8 @@ PULLING = ("slip", "symmetry")
 """Faces that hold the normal velocity of what is at them, whether it presses on them or leaves."""
 MOST = 5
 """Sentences of one kind: of a hundred drops, five pairs say all."""
+CONTIGUOUS = 1e-6
+"""Gap, cells, up to which two pieces of a solid are one body; a wider one is meant to be open."""
 NOTICED = 0.1
 """Part of gravity, away from a wall, that is worth a word."""
 
@@ -98,7 +100,11 @@ def _touching(case: Case) -> Iterator[str]:
     for i, j in combinations(range(len(case.bodies)), 2):
         a, b = case.bodies[i], case.bodies[j]
         at_one = a.velocity == b.velocity
-        if of[i] == of[j] and at_one and (fluid[of[i]] or _gap(case, a, b) <= case.grid.cell_size):
+        if (
+            of[i] == of[j]
+            and at_one
+            and (fluid[of[i]] or _gap(case, a, b) <= CONTIGUOUS * case.grid.cell_size)
+        ):
             continue  # two pieces of one body
         if not _meet(case, a, b):
             continue

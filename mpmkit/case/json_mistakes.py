@@ -58,11 +58,11 @@ def _found(text: str, at: int, said: str) -> tuple[int, str]:
         return here, f'a name or text stands in {quotes}; JSON has double quotes: "…"'
     misshapen = re.match(r"[+-]?[\d.][\w.]*", rest)
     if misshapen is not None and said.startswith("Expecting value"):
-        return here, f"{misshapen[0][:LONGEST]} is no number of JSON; write it as 0.5, 12 or 1e-3"
+        return here, f"{misshapen[0][:LONGEST]} is not a JSON number; write it as 0.5, 12 or 1e-3"
     attached = re.search(r"[\d.]+$", text[:here])
     if attached is not None and re.match(r"[\d.\w]", rest) and "delimiter" in said:
         whole = attached[0] + re.match(r"[\d.\w+-]*", rest)[0]  # type: ignore[index]
-        return attached.start(), f"{whole[:LONGEST]} is no number of JSON; write it as 0.5, 12 or 1e-3"
+        return attached.start(), f"{whole[:LONGEST]} is not a JSON number; write it as 0.5, 12 or 1e-3"
     word = WORD.match(rest)
     if word is not None and re.search(r"\d\s*$", before) and "delimiter" in said:
         return (
@@ -73,6 +73,8 @@ def _found(text: str, at: int, said: str) -> tuple[int, str]:
         return here, _of_word(
             word[0], "property name" in said or text[here + len(word[0]) :].lstrip()[:1] == ":"
         )
+    if re.match(r"[-+*/%^]", rest) and re.search(r"\d\s*$", before) and "delimiter" in said:
+        return here, f"'{rest[0]}' stands behind a number; JSON does not calculate: write the result"
     if "',' delimiter" in said:
         return len(before), f"a comma is missing, or a bracket that closes, before {_shown(rest)}"
     if "':' delimiter" in said:

@@ -22,6 +22,9 @@ from .model import Case
 from .overrides import apply_overrides
 from .strict_json import NESTED, decode, require_finite
 
+LARGEST = 100_000_000
+"""Characters of a file that are read: a device such as /dev/zero has no end."""
+
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
     """Read and validate a case file.
@@ -31,7 +34,7 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
             mesh in it starts from the folder of the file.
         overrides: ``"path.to.key=value"``, applied before validation; a relative path of a mesh in one starts
             from the working directory, as on any command line.
-        registry: plug-ins to choose from; those installed unless told.
+        registry: plug-ins to choose from; default: those installed.
 
     Raises:
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
@@ -96,15 +99,19 @@ def read_json(path: str | Path, what: str = "case") -> Any:
     """The content of a JSON file, called ``what`` in the sentence about one that cannot be read.
 
     Raises:
-        CaseError: it cannot be read, is not JSON, or has a key twice or a number that is not finite.
+        CaseError: it cannot be read, is too large, is not JSON, or has a key twice or a number that is not
+            finite.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a byte-order mark
+        with Path(path).open(encoding="utf-8-sig") as file:  # some editors begin with a byte-order mark
+            text = file.read(LARGEST + 1)
     except UnicodeDecodeError:
         raise CaseError(f"{path}: the {what} file is not a UTF-8 text file") from None
     except (OSError, ValueError) as error:  # ValueError: a path that no file can have
         reason = getattr(error, "strerror", None) or str(error)
         raise CaseError(f"{shown(str(path))}: the {what} file cannot be read: {reason}") from None
+    if len(text) > LARGEST:
+        raise CaseError(f"{path}: the {what} file has more than {LARGEST:,} characters; that is too large")
     if not text.strip():
         raise CaseError(f"{path}: the {what} file is empty; it must hold a JSON object")
     try:

@@ -93,10 +93,10 @@ class Body(Model):
     particles_per_cell: ParticleCount | list[ParticleCount] | None = Field(
         default=None,
         description="particles in a full cell (a square or cubic number), or their number along each axis; "
-        "2 along each axis unless told",
+        "default: 2 along each axis",
     )
     velocity: InitialVelocity | None = quantity(
-        "m/s", "initial velocity along each axis, or a standing wave; at rest unless told", default=None
+        "m/s", "initial velocity along each axis, or a standing wave; default: at rest", default=None
     )
 
     def particles_along_axes(self, dim: int) -> tuple[int, ...]:
@@ -156,7 +156,7 @@ class Case(Model):
     space: Literal["3d", "plane-strain", "axisymmetric"]
     until: float = quantity("s", "simulated time", gt=0)
     gravity: list[float] | None = quantity(
-        "m/s^2", "acceleration along each axis; 9.81 down the last axis unless told", default=None
+        "m/s^2", "acceleration along each axis; default: 9.81 down the last axis", default=None
     )
     grid: Grid
     bodies: list[Body] = Field(min_length=1)

@@ -31,10 +31,10 @@ class OutputSettings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
     history_interval: float | None = quantity(
-        "s", "time between rows of the history; a 400th of the run unless told", gt=0, default=None
+        "s", "time between rows of the history; default: a 400th of the run", gt=0, default=None
     )
     frame_interval: float | None = quantity(
-        "s", "time between frames; a 20th of the run unless told", gt=0, default=None
+        "s", "time between frames; default: a 20th of the run", gt=0, default=None
     )
     snapshot_times: list[Annotated[float, Field(ge=0)]] = quantity(
         "s",

@@ -17,6 +17,8 @@ EARTH = 0.1
 """Relative difference from 9.81 m/s² up to which gravity is the earth's."""
 STRONGEST = 1000.0
 """Gravity, m/s²: that of a geotechnical centrifuge; in mm/s² the earth's is 9810."""
+IN_CENTIMETRES, CLOSE = 100 * STANDARD_GRAVITY, 2e-3
+"""The earth's gravity in cm/s², and the relative difference up to which gravity is probably meant so."""
 SIZES = (1e-3, 50.0)
 """Height of a scene, m, of what is tested and cast."""
 DENSITIES = (100.0, 25_000.0)
@@ -34,6 +36,8 @@ def implausible(case: Case) -> Iterator[str]:
     strength = float(np.linalg.norm(case.gravity_vector))
     if strength > STRONGEST:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in mm/s²?"
+    elif abs(strength / IN_CENTIMETRES - 1) < CLOSE:
+        yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in cm/s²?"
     if abs(strength / STANDARD_GRAVITY - 1) < EARTH:
         yield from _on_earth(case, strength)
     fastest = (2 * case.largest_energy) ** 0.5

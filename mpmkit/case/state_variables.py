@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable
 
 from ..contracts import ConstitutiveLaw
+from ..contracts.law import initial_state
 from ..output.variables import PARTICLE_VARIABLES, ParticleVariable
+from ..registry.blame import blaming_plugins
 from .model import Case
 
 TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", "component"}
@@ -25,10 +27,13 @@ def state_variables(case: Case) -> dict[str, ParticleVariable]:
     are not a number there.
 
     Raises:
+        PluginStop: a law declares a variable that cannot be one.
         ValueError: two laws have a state variable of one name and of different units or components.
     """
     found: dict[str, ParticleVariable] = {}
     for law in laws_of(case):
+        with blaming_plugins([("law", law)]):
+            initial_state(law, 1)  # says what is wrong with a variable, if anything is
         for name, variable in law.state.items():
             field, size = field_name(law, name), math.prod(variable.shape)
             trailing = (f"{field}_component",) if variable.shape else ()

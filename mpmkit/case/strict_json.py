@@ -10,7 +10,7 @@ from typing import Any
 
 NESTED = "its objects and lists are nested too deeply"
 MOST_DIGITS = 400
-"""Longest number: more digits than any double has; Python's own limit would be told of in Python's words."""
+"""Longest number: more digits than any double has; Python's own limit would be reported in Python's words."""
 MOST_KEYS = 10_000
 """Keys in one object: far more than any case or study has; each one that is unknown is looked at."""
 LONGEST_PATH = 200

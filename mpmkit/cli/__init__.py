@@ -12,7 +12,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point of ``mpmkit`` and ``python -m mpmkit``; ends the process with the exit status.
 
     Args:
-        arguments: those of the process unless given.
+        arguments: default: those of the process.
     """
     try:
         from .commands import execute  # in here: Ctrl-C may come while this is loaded

@@ -5,19 +5,25 @@ from __future__ import annotations
 import click
 
 from . import options
-from .printing import echo_json
+from .printing import echo, echo_json
 
 SECONDS = 5.0
-"""For how long a scene is timed unless told."""
+"""For how long a scene is timed by default."""
 
 
 @click.command("bench")
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
 @options.threads
-@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), default=SECONDS, show_default=True)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=SECONDS,
+    show_default=True,
+    help="Wall time for which each scene is timed, s.",
+)
 @options.as_json
 def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_json: bool) -> None:
-    """Time full steps of the standard scenes in mid-flow, kernel by kernel; all of them unless named."""
+    """Time full steps of the standard scenes in mid-flow, kernel by kernel; default: all of them."""
     from ..bench import SCENES, time_scene
     from ..errors import CaseError
 
@@ -29,7 +35,7 @@ def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_jso
         timing = time_scene(SCENES[name], threads, seconds)
         timings.append(timing.as_dict())
         if not as_json:
-            click.echo(_table(SCENES[name].description, timings[-1]))
+            echo(_table(SCENES[name].description, timings[-1]))
     if as_json:
         echo_json(timings)
 

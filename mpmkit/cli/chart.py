@@ -6,9 +6,12 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH, refuse_existing
+from .printing import echo
+
 
 @click.command("chart")
-@click.argument("study", type=click.Path())
+@click.argument("study", type=PATH)
 @click.option(
     "--variable", default="spread_diameter", show_default=True, help="History or figure to judge by."
 )
@@ -16,38 +19,38 @@ import click
     "--reference",
     default="finest",
     show_default=True,
+    type=PATH,
     metavar="FILE|NUMBER|finest",
     help="What the error is against: a CSV file, an exact value, or the finest member.",
 )
 @click.option(
-    "--cost", default="wall_seconds", show_default=True, help="What the members are to cost least of."
+    "--cost", default="wall_seconds", show_default=True, help="Figure of a member that is its cost."
 )
-@click.option(
-    "--out", type=click.Path(), metavar="FILE", help="The picture; chart.png of the study unless told."
-)
-def command(study: str, variable: str, reference: str, cost: str, out: str | None) -> None:
+@click.option("--out", type=PATH, metavar="FILE", help="The picture; default: chart.png of the study.")
+@click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")
+def command(study: str, variable: str, reference: str, cost: str, out: str | None, overwrite: bool) -> None:
     """Chart error against cost over the members of STUDY, a study's directory, and name Pareto's front."""
-    import xarray
-
     from ..errors import CaseError
+    from ..output.netcdf import read_dataset
     from ..study.chart import chart
     from ..study.chart_figure import draw
 
+    if out is not None:  # the chart.png of a study is drawn anew by every chart
+        refuse_existing(Path(out), overwrite)
     results = Path(study) / "results.nc"
     try:
-        with xarray.open_dataset(results) as dataset:
-            dataset.load()
+        dataset = read_dataset(results)
         if "fate" not in dataset:
             raise ValueError
-    except (OSError, ValueError):
+    except (OSError, RuntimeError, ValueError):
         raise CaseError(
             f"'{study}' must be the directory of a study that was run; there is no {results} of one"
         ) from None
     found = chart(dataset, variable, reference, cost)
     path = Path(out) if out is not None else Path(study) / "chart.png"
     draw(found, str(dataset.attrs["title"]), path)
-    click.echo(f"| Pareto's front | {cost} | error of {variable} against {found.against} |")
-    click.echo("|---|---|---|")
+    echo(f"| Pareto's front | {cost} | error of {variable} against {found.against} |")
+    echo("|---|---|---|")
     for point in found.front:
-        click.echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
-    click.echo(f"\nof {len(found.points)} members; picture in {path}")
+        echo(f"| {point.title} | {point.cost:.3g} | {100 * point.error:.3g} % |")
+    echo(f"\nof {len(found.points)} member{'s' * (len(found.points) > 1)}; picture in {path}")

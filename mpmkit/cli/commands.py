@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import sys
 import traceback
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any
 
 import click
 
 from ..errors import MpmkitError, OutputError
-from ..version import __version__
 from . import (
     bench,
     chart,
@@ -27,15 +27,60 @@ from . import (
     stability,
     study,
 )
+from .printing import results_alone
+
+PIPE_CLOSED = 141
+"""What a shell says of a command that SIGPIPE ended."""
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
-@click.version_option(__version__, prog_name="mpmkit")
+class PipeClosed(Exception):
+    """Nobody reads any more what is printed, as after ``| head``."""
+
+
+class _Commands(click.Group):
+    """A group that leaves a closed pipe to ``execute``; click itself would end with status 1."""
+
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:  # here a help is printed
+        with _closed_pipe():
+            return super().make_context(*arguments, **options)
+
+    def invoke(self, context: click.Context) -> Any:
+        with _closed_pipe():
+            return super().invoke(context)
+
+
+@contextmanager
+def _closed_pipe() -> Iterator[None]:
+    try:
+        yield
+    except BrokenPipeError as error:
+        if not _of_printing(error):
+            raise
+        raise PipeClosed from None
+
+
+def _tell_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked:
+        # To read the metadata of the package takes a third of the start.
+        from ..version import __version__
+
+        click.echo(f"mpmkit, version {__version__}")
+        context.exit()
+
+
+@click.group(
+    cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+)
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_tell_version,
+    help="Show the version and exit.",
+)  # fmt: skip
 @click.pass_context
 def commands(context: click.Context) -> None:
     """Simulate the flow of yield-stress materials with the Material Point Method.
 
-    Exit status: 0 done, 2 bad input, 3 stopped by a guard, 4 could not write, 130 interrupted.
+    Exit status: 0 done, 1 members of a study failed or a rerun differs, 2 bad input, 3 stopped by a guard,
+    4 could not write, 130 interrupted.
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
@@ -56,6 +101,9 @@ for module in (
     schema,
 ):
     commands.add_command(module.command)
+for command in commands.commands.values():
+    assert command.callback is not None
+    command.callback = results_alone()(command.callback)
 for command in (commands, *commands.commands.values()):
     command.params.append(options.no_plugins)
 
@@ -75,9 +123,12 @@ def execute(arguments: Sequence[str] | None) -> int:
         command = error.ctx.command_path if error.ctx is not None else "mpmkit"
         _tell(f"{error.format_message().rstrip('.')}; see {command} --help")
         return error.exit_code
+    except PipeClosed:
+        _let_go_of_output()
+        return PIPE_CLOSED
     except click.Abort as abort:  # click's word for it
         raise KeyboardInterrupt(str(abort.__cause__ or "")) from None
-    except OSError as error:
+    except OSError as error:  # such as a full disk
         if not _of_printing(error):
             raise
         _let_go_of_output()
@@ -92,9 +143,14 @@ def _of_printing(error: OSError) -> bool:
 
 def _let_go_of_output() -> None:
     """Send what is still to be printed nowhere, or Python would fail of it once more when it ends."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):
+            stream.flush()
+            continue
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _tell(sentence: str) -> None:
-    click.echo(f"mpmkit: {' '.join(sentence.split())}", err=True)
+    with suppress(OSError):  # nobody may read it any more
+        click.echo(f"mpmkit: {' '.join(sentence.split())}", err=True)

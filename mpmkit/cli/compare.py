@@ -20,6 +20,7 @@ from .study import run_study
 @options.set_values
 @options.until
 @options.study_out
+@options.study_overwrite
 @options.workers
 @options.member_threads
 @options.scheduler
@@ -30,6 +31,7 @@ def command(
     overrides: tuple[str, ...],
     until: float | None,
     out: str | None,
+    overwrite: bool,
     workers: int | None,
     threads: int | None,
     scheduler: str | None,
@@ -38,16 +40,25 @@ def command(
     """Run CASE with every combination of the values given, and gather them as a study does."""
     from ..case.load import name_from, read_case
     from ..case.overrides import apply_overrides
+    from ..errors import CaseError
     from ..study import parse_study
+    from ..study.clashes import replaced
     from ..study.vary import parse_vary
 
+    varied = parse_vary(vary)
+    lost = replaced([override.partition("=")[0] for override in overrides], varied)
+    if lost is not None:
+        raise CaseError(
+            f"--set {lost[0]} is a part of --vary {lost[1]}, which replaces it in every member; "
+            f"leave it out, or make it a part of the values of --vary {lost[1]}"
+        )
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
     study = parse_study(
         {
             "name": f"compare-{name_from(case)}"[:100],
             "case": data,
-            "vary": parse_vary(vary),
+            "vary": varied,
         },
         source="--vary",
     )
-    run_study(study, out, workers, threads, scheduler, quiet)
+    run_study(study, out, overwrite, workers, threads, scheduler, quiet)

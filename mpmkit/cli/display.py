@@ -10,7 +10,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
 from numba.core import event
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
@@ -19,6 +18,7 @@ from rich.table import Column
 from ..output.log import RECORD
 from ..output.summary import state_at_end
 from .duration import duration
+from .printing import echo
 
 if TYPE_CHECKING:
     from ..running import runner
@@ -42,7 +42,15 @@ FIGURES = (
 )
 """What the summary shows: key, label, scale, unit and digits."""
 
-console = Console(stderr=True)
+
+class _Screen(Console):
+    """Falls silent where nobody reads any more; rich itself would end the process, and the run with it."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+
+
+console = _Screen(stderr=True)
 
 
 def say(line: str, style: str | None = None) -> None:
@@ -58,7 +66,7 @@ class Display(logging.Handler):
     """Shows the log and the progress of a run; a context manager, called with every ``runner.Progress``.
 
     Errors of the log are left to the last sentence of ``main``, and nothing is shown before the run has
-    something to say: a case that is refused is told of in one sentence and no more.
+    something to say: a case that is refused is reported in one sentence and no more.
     """
 
     def __init__(self, name: str) -> None:
@@ -153,5 +161,5 @@ def show_summary(directory: Path) -> None:
         figure = "–" if value is None else f"{value * scale:,.{digits}f}{unit}"
         if key == "final_spread" and (state := state_at_end(summary)) is not None:
             figure += f", {state}"
-        click.echo(f"{label:<{width}}  {figure}")
-    click.echo(f"results in {directory}")
+        echo(f"{label:<{width}}  {figure}")
+    echo(f"results in {directory}")

@@ -6,6 +6,9 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH
+from .printing import echo
+
 
 @click.command("new-plugin")
 @click.argument("name")
@@ -15,10 +18,10 @@ import click
     required=True,
     help="What the plug-in is.",
 )
-@click.option("--out", type=click.Path(), metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
+@click.option("--out", type=PATH, metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
 def command(name: str, kind: str, out: str | None) -> None:
     """Write a distribution for a new plug-in NAME, with tests that it passes, to be made one's own."""
     from ..registry.scaffold import new_plugin
 
     directory = new_plugin(name, kind, None if out is None else Path(out))
-    click.echo(f"wrote {directory}; next: cd '{directory}' && pip install -e '.[test]' && pytest")
+    echo(f"wrote {directory}; next: cd '{directory}' && pip install -e '.[test]' && pytest")

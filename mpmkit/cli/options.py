@@ -6,7 +6,9 @@ import os
 
 import click
 
-case_file = click.argument("case", type=click.Path())
+from .paths import PATH
+
+case_file = click.argument("case", type=PATH)
 set_values = click.option(
     "--set",
     "overrides",
@@ -16,23 +18,26 @@ set_values = click.option(
 )
 until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
 threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads to use; as many as pay off unless told."
+    "--threads", type=click.IntRange(min=1), help="Threads to use; default: as many as pay off."
 )
 quiet = click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
-out = click.option(
-    "--out", type=click.Path(), metavar="DIR", help="Run directory; runs/<case name> unless told."
-)
+out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; default: runs/<case name>.")
 study_out = click.option(
-    "--out", type=click.Path(), metavar="DIR", help="The study's directory; runs/<study name> unless told."
+    "--out", type=PATH, metavar="DIR", help="The study's directory; default: runs/<study name>."
+)
+study_overwrite = click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace results in the study's directory that this study does not go on with.",
 )
 member_threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads of each member; as the study says unless told."
+    "--threads", type=click.IntRange(min=1), help="Threads of each member; default: as the study says."
 )
 workers = click.option(
     "--workers",
     type=click.IntRange(min=1),
-    help="Members to run at once; as many as this machine's cores hold unless told.",
+    help="Members to run at once; default: as many as this machine's cores hold.",
 )
 scheduler = click.option(
     "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."

@@ -8,7 +8,7 @@ import click
 
 from . import options
 from .duration import duration
-from .printing import echo_json
+from .printing import echo, echo_json
 
 MOST_COUNTED = 10**15
 """From here on nobody reads the digits."""
@@ -50,7 +50,7 @@ def command(
     ]
     asked = [f"--set {shlex.quote(override)}" for override in overrides]
     asked += [] if until is None else [f"--until {until!r}"]
-    click.echo("\n".join([*lines, *_advice(" ".join([shlex.quote(case), *asked]), cost)]))
+    echo("\n".join([*lines, *_advice(" ".join([shlex.quote(case), *asked]), cost)]))
 
 
 def _advice(asked: str, cost: dict) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from . import options
-from .printing import echo_json
+from .printing import echo, echo_json
 
 COLUMNS = ("kind", "name", "distribution", "citation")
 
@@ -45,7 +45,7 @@ def command(as_json: bool) -> None:
     widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
     for row in rows:
         cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
-        click.echo("  ".join(cells).rstrip())
+        echo("  ".join(cells).rstrip())
     for entries in registry.plugins.values():
         for _, entry in sorted(entries.items()):
             old = deprecation(entry.plugin)

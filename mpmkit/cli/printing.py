@@ -1,12 +1,21 @@
-"""Printing on a terminal or into a file whose encoding lacks some of our characters."""
+"""What commands print: results, and nothing else, on the standard output."""
 
 from __future__ import annotations
 
+import ctypes
 import json
+import os
 import sys
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO
 
 import click
+
+STDOUT, STDERR = 1, 2
+"""Numbers of the files that the system gives a process."""
+_results: TextIO | None = None
+"""The standard output, while a command runs; None for that of Python."""
 
 
 def replace_unknown_characters() -> None:
@@ -17,8 +26,55 @@ def replace_unknown_characters() -> None:
             reconfigure(errors="replace")
 
 
+@contextmanager
+def results_alone() -> Iterator[None]:
+    """Keep the standard output for ``echo``: what plug-ins print inside the block goes to standard error.
+
+    That holds for ``print``, for libraries in other languages, and for processes that are started.
+    """
+    global _results
+    before = sys.stdout
+    if before is not None:
+        before.flush()
+    saved = None
+    with suppress(OSError):  # one of them is closed, or a test has put something else in its place
+        saved = os.dup(STDOUT)
+        os.dup2(STDERR, STDOUT)
+    _results, sys.stdout = _opened(before, saved), sys.stderr
+    try:
+        yield
+    finally:
+        sys.stdout = before
+        with suppress(OSError, ValueError):
+            before.flush()  # what was written to it in another way, while it still leads to standard error
+        if _results is not before and _results is not None:
+            with suppress(OSError):  # what ``echo`` could not write it has said
+                _results.close()
+        _results = None
+        if saved is not None:
+            with suppress(OSError, AttributeError, TypeError):  # a system whose library is found otherwise
+                ctypes.CDLL(None).fflush(None)
+            os.dup2(saved, STDOUT)
+            os.close(saved)
+
+
+def _opened(stream: TextIO, saved: int | None) -> TextIO:
+    """A stream to where this one leads before its file is another; itself if it leads elsewhere."""
+    try:
+        if saved is None or stream.fileno() != STDOUT:
+            return stream
+    except (OSError, AttributeError):  # there is none, or it has no file
+        return stream
+    return open(os.dup(saved), "w", encoding=stream.encoding, errors=stream.errors)
+
+
+def echo(text: str, nl: bool = True) -> None:
+    """Print a result on the standard output."""
+    click.echo(text, file=_results, nl=nl)
+
+
 def echo_json(data: Any) -> None:
     """Print JSON: its characters as they are in UTF-8, and escaped in every other encoding."""
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
     readable = encoding.lower().replace("-", "").replace("_", "") == "utf8"
-    click.echo(json.dumps(data, indent=2, ensure_ascii=not readable))
+    echo(json.dumps(data, indent=2, ensure_ascii=not readable))

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+import time as clock
+from collections.abc import Callable
+
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TextColumn,
+    TimeElapsedColumn,
+)
+from rich.text import Text
 
 from ..plan.rough import rough_seconds
 from ..study import Member
@@ -29,13 +41,14 @@ class StudyProgress:
         self._expected = {member.slug: _expected(member, threads) for member in waiting}
         self._at_once = max(1, min(at_once, len(waiting)))
         self._taken = self._of_those = 0.0
+        self._since = clock.monotonic()
         total = len(waiting) + already
         self._bar = Progress(
             TextColumn("[bold]{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
-            TextColumn("{task.fields[left]}"),
+            _TimeLeft(self._words),
             console=console,
             disable=not console.is_terminal,
         )
@@ -47,7 +60,7 @@ class StudyProgress:
                 f"{len(waiting)} members to run, {self._at_once} at once: {self._words()}, "
                 f"the longest member about {duration(longest)} (roughly; mpmkit plan measures a member)"
             )
-        self._task = self._bar.add_task(name, total=total, completed=already, left=self._words())
+        self._task = self._bar.add_task(name, total=total, completed=already)
 
     def __enter__(self) -> StudyProgress:
         self._bar.start()
@@ -61,18 +74,37 @@ class StudyProgress:
         if outcome.fate == "finished" and seconds is not None:
             self._taken += seconds
             self._of_those += expected
-        self._bar.update(self._task, advance=1, left=self._words())
+        self._since = clock.monotonic()
+        self._bar.update(self._task, advance=1)
         took = "" if seconds is None else f", {seconds:.1f} s"
         say(f"{member.title}: {outcome.fate}{took}{': ' if outcome.sentence else ''}{outcome.sentence}")
 
     def _left(self) -> float:
-        """Seconds, from the rough times of those that wait, corrected by what others have really taken."""
+        """Seconds, from the rough times of those that wait, corrected by what others have really taken.
+
+        Between two members that end, the time that passes is taken off.
+        """
         correction = self._taken / self._of_those if self._of_those > 0 else 1.0
         each = [correction * seconds for seconds in self._expected.values()]
-        return max(sum(each) / self._at_once, max(each, default=0.0))
+        left = max(sum(each) / self._at_once, max(each, default=0.0))
+        return max(0.0, left - (clock.monotonic() - self._since))
 
     def _words(self) -> str:
-        return f"about {duration(self._left())} left" if self._expected else ""
+        if not self._expected:
+            return ""
+        left = self._left()
+        return f"about {duration(left)} left" if left > 0 else "longer than expected"
+
+
+class _TimeLeft(ProgressColumn):
+    """The time left, as it is whenever the bar is drawn."""
+
+    def __init__(self, words: Callable[[], str]) -> None:
+        super().__init__()
+        self._words = words
+
+    def render(self, task: Task) -> Text:
+        return Text(self._words())
 
 
 def _expected(member: Member, threads: int) -> float:

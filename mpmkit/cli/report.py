@@ -6,9 +6,12 @@ from pathlib import Path
 
 import click
 
+from .paths import PATH
+from .printing import echo
+
 
 @click.command("report")
-@click.argument("directory", type=click.Path())
+@click.argument("directory", type=PATH)
 def command(directory: str) -> None:
     """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""
     from ..errors import CaseError, MpmkitError, reason
@@ -21,4 +24,4 @@ def command(directory: str) -> None:
     except Exception as error:  # a file of the run that someone has changed or cut off
         raise CaseError(f"the pictures of '{directory}' cannot be drawn: {reason(error)}") from None
     for path in written:
-        click.echo(str(path))
+        echo(str(path))

@@ -7,11 +7,13 @@ from pathlib import Path
 import click
 
 from . import options
+from .paths import PATH
+from .printing import echo
 
 
 @click.command("rerun")
-@click.argument("directory", type=click.Path())
-@click.option("--out", type=click.Path(), metavar="DIR", help="Where to; DIRECTORY-rerun unless told.")
+@click.argument("directory", type=PATH)
+@click.option("--out", type=PATH, metavar="DIR", help="Where to; default: DIRECTORY-rerun.")
 @options.threads
 @options.overwrite
 @options.quiet
@@ -29,12 +31,12 @@ def command(directory: str, out: str | None, threads: int | None, overwrite: boo
     case, before = case_of(path), history_of(path)
     target = Path(out) if out is not None else path.with_name(f"{path.resolve().name}-rerun")
     for sentence in made_differently(before, case, threads or 1):
-        click.echo(f"not as it was: {sentence}")
+        echo(f"not as it was: {sentence}")
     take_signals_as_interrupts()
     perform(target, quiet, resumed=False, case=case, overwrite=overwrite, threads=threads,
             checkpoint_every=None)  # fmt: skip
     apart = first_difference(before, history_of(target))
     if apart is not None:
-        click.echo(f"not the same: {apart}")
+        echo(f"not the same: {apart}")
         raise click.exceptions.Exit(1)
-    click.echo(f"the same bits, in {before.sizes['time']} rows of the history")
+    echo(f"the same bits, in {before.sizes['time']} rows of the history")

@@ -9,10 +9,11 @@ import click
 
 from . import options
 from .duration import SECONDS
+from .paths import PATH
 
 
 @click.command("run")
-@click.argument("case", type=click.Path(), required=False)
+@click.argument("case", type=PATH, required=False)
 @options.out
 @options.set_values
 @options.until
@@ -29,7 +30,7 @@ from .duration import SECONDS
 @click.option(
     "--resume",
     "stopped",
-    type=click.Path(),
+    type=PATH,
     metavar="DIR",
     help="Go on with the run in this directory from its last checkpoint; CASE may be left out. With --until, "
     "a run that has finished goes on to a later time.",
@@ -91,7 +92,7 @@ def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **setting
         else:
             run(case, directory, listen=listen, **settings)
 
-    with np.errstate(all="ignore"):  # a run that diverges is told of by its guard, not by every array
+    with np.errstate(all="ignore"):  # its guard reports a run that diverges, not every array
         if quiet:
             with suppress(Undrawn):
                 go(None)

@@ -8,14 +8,15 @@ from pathlib import Path
 import click
 
 from . import options
-from .printing import echo_json
+from .paths import PATH, refuse_existing
+from .printing import echo, echo_json
 
 
 def _names(kind: str):
     return click.option(
         f"--{kind}",
         metavar="A,B,…",
-        help=f"Names of the plug-ins of kind {kind} to try; the case's own unless told.",
+        help=f"Names of the plug-ins of kind {kind} to try; default: the case's own.",
     )
 
 
@@ -28,7 +29,10 @@ def _names(kind: str):
 @_names("law")
 @options.set_values
 @options.until
-@options.out
+@click.option(
+    "--out", type=PATH, metavar="DIR", help="Directory of the map; default: runs/stability-<case name>."
+)
+@click.option("--overwrite", is_flag=True, help="Replace an earlier map there.")
 @options.as_json
 def command(
     case: str,
@@ -40,6 +44,7 @@ def command(
     overrides: tuple[str, ...],
     until: float | None,
     out: str | None,
+    overwrite: bool,
     as_json: bool,
 ) -> None:
     """Find the largest stable time step of CASE for every combination of the schemes named.
@@ -51,10 +56,13 @@ def command(
     from ..case.load import read_case
     from ..case.overrides import apply_overrides
     from ..stability import combinations, critical_fraction
+    from ..stability.figure import draw, picture_in
     from .display import say
 
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
+    directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
+    refuse_existing(picture_in(directory), overwrite)  # before hours are spent on it
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
     rows = []
     for labels, combination in list(combinations(data, chosen)):
@@ -66,13 +74,10 @@ def command(
         finite = [{k: None if v == math.inf else v for k, v in row.items()} for row in rows]
         echo_json(finite)
     else:
-        click.echo(_table(list(chosen), rows))
-    from ..stability.figure import draw
-
-    directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
+        echo(_table(list(chosen), rows))
     path = draw(rows, list(chosen), str(data["name"]), directory)
     if not as_json:
-        click.echo(f"map in {path}")
+        echo(f"map in {path}")
 
 
 def _stable(row: dict) -> str:

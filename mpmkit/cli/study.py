@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from . import options
+from .paths import PATH
+from .printing import echo
 
 if TYPE_CHECKING:
     from ..study import Member, Study
@@ -16,46 +18,60 @@ if TYPE_CHECKING:
 
 
 @click.command("study")
-@click.argument("study", type=click.Path())
+@click.argument("study", type=PATH)
 @options.study_out
+@options.study_overwrite
 @options.workers
 @options.member_threads
 @options.scheduler
 @options.quiet
 def command(
-    study: str, out: str | None, workers: int | None, threads: int | None, scheduler: str | None, quiet: bool
-) -> None:
-    """Run the variations that STUDY describes, and gather them in one dataset, figures and a table.
-
-    Members that have run already, of the same case and with the same versions, are not run again.
-    """
-    from ..study import load_study
-
-    run_study(load_study(study), out, workers, threads, scheduler, quiet)
-
-
-def run_study(
-    study: Study,
+    study: str,
     out: str | None,
+    overwrite: bool,
     workers: int | None,
     threads: int | None,
     scheduler: str | None,
     quiet: bool,
 ) -> None:
-    """Run a study into its directory and say what came of it."""
+    """Run the variations that STUDY describes, and gather them in one dataset, figures and a table.
+
+    Members that have run already, of the same case and with the same versions, are not run again.
+    The exit status is 1 where members failed or were not run.
+    """
+    from ..study import load_study
+
+    run_study(load_study(study), out, overwrite, workers, threads, scheduler, quiet)
+
+
+def run_study(
+    study: Study,
+    out: str | None,
+    overwrite: bool,
+    workers: int | None,
+    threads: int | None,
+    scheduler: str | None,
+    quiet: bool,
+) -> None:
+    """Run a study into its directory and say what came of it.
+
+    Raises:
+        Unfinished: members failed, or were not run.
+    """
     from contextlib import nullcontext
 
     from ..errors import Interrupted
     from ..running.interrupts import take_signals_as_interrupts
     from ..study import collect, execute, members_of
+    from ..study.execute import Unfinished, named
     from ..study.processes import cores
     from ..study.store import Store
 
     members = members_of(study)
-    store = Store(Path(out) if out is not None else Path("runs") / study.name)
+    store = Store(Path(out) if out is not None else Path("runs") / study.name, overwrite)
     take_signals_as_interrupts()
     # The cluster first of all: where there is none, nothing is written.
-    with _cluster(scheduler) as executor, store.claimed(study):
+    with _cluster(scheduler) as executor, store.claimed(study, members):
         at_once = workers or max(1, cores() // (threads or study.threads))
         progress = None if quiet else _progress(study, members, store, at_once, threads or study.threads)
         with progress or nullcontext():
@@ -76,8 +92,14 @@ def run_study(
             finally:
                 store.write(collect(study, members, store))
     if not quiet:
-        click.echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
-        click.echo(f"results in {store.path}")
+        echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
+        echo(f"results in {store.path}")
+    failed = [member.title for member in members if not store.settled(member)]
+    if failed:
+        raise Unfinished(
+            f"{named(failed, len(members))} failed; member.json of each in '{store.path / 'members'}' says "
+            "why, and the same command runs them again"
+        )
 
 
 def _progress(study: Study, members: list[Member], store: Store, at_once: int, threads: int) -> StudyProgress:
@@ -86,6 +108,10 @@ def _progress(study: Study, members: list[Member], store: Store, at_once: int, t
 
     for sentence in dict.fromkeys(remark for member in members for remark in member.remarks):
         say(sentence)
+    for member in members:
+        damaged = store.damaged(member)
+        if damaged is not None:
+            say(f"{member.title}: '{damaged}' is damaged; the member is run again")
     waiting = [member for member in members if not store.settled(member)]
     return StudyProgress(study.name, waiting, len(members) - len(waiting), at_once, threads)
 

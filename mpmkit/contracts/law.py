@@ -62,7 +62,7 @@ class StateVariable:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """What a law is told of the particles that it governs. Tensors are 3 × 3 in every space.
+    """What a law is given of the particles that it governs. Tensors are 3 × 3 in every space.
 
     The components follow the axes of the grid; in two dimensions the third one is out of the plane
     (the hoop direction of an axisymmetric scene).

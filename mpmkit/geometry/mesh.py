@@ -35,7 +35,7 @@ class Mesh(Shape):
         default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
     )
     translate: list[float] | None = quantity(
-        "m", "shift after scaling; none unless told", default=None, min_length=3, max_length=3
+        "m", "shift after scaling; default: none", default=None, min_length=3, max_length=3
     )
 
     tolerance = 1e-6  # the file may hold its corners in single precision
@@ -149,10 +149,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
     degenerate = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
     surface.update_faces(~degenerate)
     if len(surface.faces) == 0 or not surface.is_watertight:
-        raise CaseError(
-            f"the mesh's file is {shown}, but its surface is not closed: "
-            "each edge must belong to exactly two triangles"
-        )
+        raise CaseError(f"the mesh's file is {shown}, but {_why_not_watertight(np.asarray(surface.faces))}")
     vertices = np.asarray(surface.vertices) * scale + shift
     closed = trimesh.Trimesh(vertices, _outward(vertices, np.asarray(surface.faces)), process=False)
     place = crossing(np.asarray(closed.vertices), np.asarray(closed.faces))
@@ -206,3 +203,16 @@ def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
         if inward != (abs(depth) % 2 > 0.5):
             faces[own] = faces[own][:, ::-1]
     return faces
+
+
+def _why_not_watertight(faces: np.ndarray) -> str:
+    """An edge of one triangle is at a hole; an edge of more than two is where shells touch."""
+    edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    if (count == 2).all() or (count == 1).any():
+        return "its surface is not closed: each edge must belong to exactly two triangles"
+    return (
+        f"{np.count_nonzero(count > 2)} edges belong to more than two triangles, so that its surface is not "
+        "closed: shells of it touch there, or one is in the file twice; they must be united (a boolean "
+        "union) in the program that wrote it"
+    )

@@ -21,7 +21,7 @@ class Upright(Shape):
 
     height: float = quantity("m", "height along the last axis", gt=0)
     base: list[float] | None = quantity(
-        "m", "centre of the bottom disc; the origin unless told", default=None, min_length=2, max_length=3
+        "m", "centre of the bottom disc; default: the origin", default=None, min_length=2, max_length=3
     )
 
     @abstractmethod

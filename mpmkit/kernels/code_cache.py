@@ -1,19 +1,18 @@
-"""Where compiled kernels are kept, so that only the first run compiles.
+"""Compiled code that outlives the process, so that only the first run compiles.
 
-numba looks at the file of a kernel alone: if another file changes, a function that the kernel calls or a
-constant that it was compiled with, the old code would go on being used. So the compiled code of a package is
-kept under a digest of *all* its sources and of those of ``mpmkit.kernels``. What belongs to sources that are
-no more is removed.
+numba's own cache looks at the file of a kernel alone. If a function that the kernel calls changes in another
+file, or a constant that it was compiled with, numba goes on using the old code. Here the name of a file of
+compiled code depends on all that went into it: the sources of the kernel's package and of ``mpmkit.kernels``,
+the constants of the kernel and the functions that it calls, from any package (``fingerprint``), and the types
+of its arguments. Where one of these has no key, each process compiles the kernel anew.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
-import shutil
+import pickle
+import re
 import sys
-import tempfile
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -21,79 +20,94 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from platformdirs import user_cache_path
+import numpy as np
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.dispatcher import Dispatcher
+from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
 
-KEPT = 4
-"""Generations of compiled code that are kept of a package: branches that are worked on in turn."""
-IN_USE = 86_400
-"""Seconds since its last use for which an older generation is kept all the same: a run may be using it."""
+from . import code_folders
+from .fingerprint import Unknown, fingerprint, signature_key
+
 KERNELS = Path(__file__).parent
 
 
 def cached_code(compiler: Callable[..., Callable], *arguments: Any, **options: Any) -> Callable:
-    """``compiler(*arguments, cache=True, **options)`` as a decorator whose code outlives the process."""
+    """``compiler(*arguments, **options)`` as a decorator whose code outlives the process."""
 
     def decorate(python_function: Callable) -> Callable:
-        directory = _directory(python_function.__module__)
-        if directory is None:
-            return compiler(*arguments, **options)(python_function)
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = str(directory)  # numba asks for it when it decorates, and never again
-        try:
-            return compiler(*arguments, cache=True, **options)(python_function)
-        finally:
-            numba.config.CACHE_DIR = before
+        compiled = compiler(*arguments, **options)(python_function)
+        if isinstance(compiled, Dispatcher):  # not so where compilation is switched off
+            compiled._cache = KeptCode(compiled)  # type: ignore[attr-defined]
+        return compiled
 
     return decorate
 
 
-@cache
-def cache_root() -> Path | None:
-    """``NUMBA_CACHE_DIR`` if it is set, or the user's cache directory; None where nothing can be written."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    places = [Path(given)] if given else [user_cache_path("mpmkit"), Path(tempfile.gettempdir()) / "mpmkit"]
-    for place in places:
+class KeptCode(NullCache):
+    """The kept code of one function; numba asks it before it compiles, and gives it what it compiled.
+
+    The sources are read when the function is made, since they may change while a process runs. Constants are
+    looked at when it is compiled, as numba does: a module may set them after the function.
+    """
+
+    def __init__(self, function: Dispatcher) -> None:
+        self._function = function
+        self._package = _package(function.py_func.__module__)
+        self.compiled_with: str | None = None
+        """Fingerprint of the function when code for it was first asked for"""
+
+    @property
+    def cache_path(self) -> str | None:
+        """The folder; numba shows it in ``stats``."""
+        root = code_folders.cache_root()
+        return None if root is None else str(root / self._package)
+
+    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
+        """Code for a signature, None if there is none."""
+        target_context.refresh()
         try:
-            place.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=place):
-                return place
-        except OSError:
-            continue
-    return None
+            path = self._path(sig, target_context.codegen())
+            return CompileResult._rebuild(target_context, *pickle.loads(code_folders.read(path)))
+        except Exception:  # there is none, or a file is damaged: compiling anew is always right
+            return None
 
+    def save_overload(self, sig: Any, data: CompileResult) -> None:
+        """Keep code, if it can be: not what holds an address of this process."""
+        if data.library.has_dynamic_globals or not all(part.can_cache for part in data.lifted):
+            return
+        with suppress(Exception):  # a full disk, or a value without a key
+            code_folders.write(self._path(sig, data.codegen), dumps(data._reduce()))
 
-def _directory(module: str) -> Path | None:
-    """Where the compiled code of a module's package belongs; None if there is no place for it."""
-    root = cache_root()
-    return None if root is None else _generation(root, *_package(module))
-
-
-def _package(module: str) -> tuple[str, tuple[Path, ...]]:
-    """Name and sources of the package that a module belongs to; of mpmkit itself, its kernels alone."""
-    top = module.partition(".")[0]
-    if top == "mpmkit":
-        return "mpmkit", (KERNELS,)
-    found = sys.modules.get(top)
-    folders = getattr(found, "__path__", None)
-    if folders is not None:
-        return top, tuple(Path(folder) for folder in folders)
-    file = getattr(found, "__file__", None)
-    return top, () if file is None else (Path(file),)
+    def _path(self, sig: Any, codegen: Any) -> Path:
+        root = code_folders.cache_root()
+        if root is None:
+            raise Unknown("no folder can be written")
+        now = fingerprint(self._function)
+        self.compiled_with = self.compiled_with or now
+        key = f"{now} {signature_key(normalize_signature(sig)[0])} {codegen.magic_tuple()}"
+        python = self._function.py_func
+        name = f"{python.__module__}.{python.__qualname__}"
+        called = hashlib.sha256(f"{name} {key}".encode()).hexdigest()[:32]
+        file = re.sub(r"\W+", "_", name)[-100:]
+        return root / self._package / f"{file}.{called}{code_folders.CODE}"
 
 
 @cache
-def _generation(root: Path, name: str, sources: tuple[Path, ...]) -> Path | None:
-    versions = (sys.version, numba.__version__)
-    directory = root / f"{name}-{digest((KERNELS, *sources), versions)}"
-    new = not directory.exists()
-    try:
-        directory.mkdir(exist_ok=True)
-        os.utime(directory)
-    except OSError:
-        return None
-    if new:
-        forget_old_generations(root, name)
-    return directory
+def _package(module: str) -> str:
+    """Name and digest of the package that a module belongs to; of mpmkit itself, its kernels alone."""
+    top = module.partition(".")[0]
+    package = sys.modules.get(top)
+    if top == "mpmkit":
+        sources = []
+    elif getattr(package, "__path__", None) is not None:
+        sources = [Path(folder) for folder in package.__path__]  # type: ignore[union-attr]
+    else:
+        file = getattr(package, "__file__", None)
+        sources = [] if file is None else [Path(file)]
+    versions = (sys.version, numba.__version__, np.__version__)
+    return f"{top}-{digest((KERNELS, *sources), versions)}"
 
 
 def digest(sources: tuple[Path, ...], versions: tuple[str, ...] = ()) -> str:
@@ -104,15 +118,3 @@ def digest(sources: tuple[Path, ...], versions: tuple[str, ...] = ()) -> str:
         for file in filter(Path.is_file, files):  # an editor's lock is a link to nowhere
             total.update(str(file).encode() + b"\0" + file.read_bytes())
     return total.hexdigest()[:16]
-
-
-def forget_old_generations(root: Path, name: str) -> None:
-    """Remove the compiled code of sources that are no more, but for the last few used."""
-    generations = []
-    for path in root.glob(f"{name}-*"):
-        with suppress(OSError):  # another process may have removed it
-            if path.name.rpartition("-")[0] == name:
-                generations.append((path.stat().st_mtime, path))
-    for used, path in sorted(generations, reverse=True)[KEPT:]:
-        if time.time() - used > IN_USE:
-            shutil.rmtree(path, ignore_errors=True)

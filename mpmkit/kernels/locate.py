@@ -42,7 +42,7 @@ def locate(dim: int):
                         here = there = True
                         for d in range(dim):
                             x, half = position[p, d], half_size[p, d]
-                            # Also false of a NaN; and a box that is none would send the weights anywhere.
+                            # Also false of a NaN; and a box without a size would send the weights anywhere.
                             there &= (x >= 0.0) & (x <= extent[d]) & (half > 0.0) & (half < np.inf)
                             cells = x * inverse_cell
                             here &= cells >= max(window_low[d], block_cell[b, d] - 1)

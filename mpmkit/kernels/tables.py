@@ -10,10 +10,10 @@ from .compile import CHUNK, chunk_count, function, kernel
 
 @function()
 def near(position, inverse_cell, base, least, most):
-    """Whether ``least <= base - position / cell <= most`` for all entries of two flat arrays."""
-    good = True
-    for k in range(len(base)):
-        away = base[k] - position[k] * inverse_cell
+    """Whether ``least <= base - position / cell <= most`` for all entries of two arrays, ``(n, dim)``."""
+    good, places, nodes = True, position.reshape(-1), base.reshape(-1)
+    for k in range(len(nodes)):
+        away = nodes[k] - places[k] * inverse_cell
         good &= (away >= least) & (away <= most)
     return good
 

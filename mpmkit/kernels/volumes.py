@@ -7,6 +7,9 @@ from numba import prange
 
 from .compile import CHUNK, chunk_count, kernel
 
+FEW = 20_000
+"""Particles up to which a copy takes less than the start of several threads."""
+
 
 @kernel()
 def stretch(rate, dt, initial_volume, volume_ratio, volume):
@@ -19,14 +22,17 @@ def stretch(rate, dt, initial_volume, volume_ratio, volume):
 
 
 def assign(field: np.ndarray, values: np.ndarray) -> None:
-    """``field[:] = values``, ``(n,)``, by all threads; values that a plug-in made may have any shape.
+    """``field[:] = values``, ``(n,)``, by all threads where that is worth it.
 
     Raises:
-        ValueError: they have another one.
+        ValueError: the values have another shape.
     """
-    if np.shape(values) != field.shape:
-        raise ValueError(f"an array of shape {field.shape} was needed, not one of {np.shape(values)}")
-    _assign(field, values)
+    if values.shape != field.shape:
+        raise ValueError(f"an array of shape {field.shape} was needed, not one of {values.shape}")
+    if len(field) < FEW:
+        field[:] = values
+    else:
+        _assign(field, values)
 
 
 @kernel()

@@ -86,7 +86,7 @@ class Checkpoints:
 
     def paths(self) -> list[Path]:
         """Files of the checkpoints, the newest first."""
-        return sorted(self.directory.glob("step_*.checkpoint"), reverse=True)
+        return sorted(self.directory.glob(f"step_{'[0-9]' * 12}.checkpoint"), reverse=True)
 
     def keep_last(self) -> None:
         """Remove all of them but the newest."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,6 +14,7 @@ from ..spaces import Space
 from .atomic import cannot_write, replacing
 
 LIST_NAME = "frames.pvd"
+_NAME = re.compile(r"frame_\d{6,}\.vtu")
 
 
 class FrameWriter:
@@ -58,7 +60,7 @@ class FrameWriter:
         """Remove the frames that are not of this run, and the list."""
         try:
             # The list goes first: a list without its frames would be worse than frames without a list.
-            for old in (self.directory / LIST_NAME, *self.directory.glob("frame_*.vtu")):
+            for old in (self.directory / LIST_NAME, *frame_files(self.directory)):
                 if old.name not in self.frames:
                     old.unlink(missing_ok=True)
         except OSError as error:
@@ -104,6 +106,11 @@ class FrameWriter:
         ET.indent(root)
         with replacing(self.directory / LIST_NAME) as partial:
             ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
+
+
+def frame_files(directory: Path) -> list[Path]:
+    """The frames that runs have written into a directory; other files in it are the user's."""
+    return [path for path in Path(directory).glob("frame_*.vtu") if _NAME.fullmatch(path.name)]
 
 
 def read_frames(directory: Path) -> list[tuple[float, Path]]:

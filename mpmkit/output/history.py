@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .atomic import cannot_write, replacing
+from .netcdf import write_dataset
 from .variables import PARTICLE_VARIABLES, ParticleVariable, Variable, tensor_components
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class History:
         self._times: list[float] = []
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
         self._particles: dict[str, list[np.ndarray]] | None = None
-        self._next_flush = -np.inf  # the first row is written at once: a full disk is told of at the start
+        self._next_flush = -np.inf  # the first row is written at once: a full disk is noticed at the start
 
     def __len__(self) -> int:
         return len(self._times)
@@ -145,14 +145,7 @@ class History:
         Raises:
             OutputError: where the file cannot be written.
         """
-        dataset = self.dataset()
-        with replacing(path) as partial:
-            try:
-                dataset.to_netcdf(partial, engine="netcdf4")
-            except (
-                RuntimeError
-            ) as error:  # how netCDF4 reports a failure in the middle of a file: a full disk
-                raise cannot_write(path, error) from error
+        write_dataset(self.dataset(), path)
 
     def flush_if_due(self, path: Path) -> None:
         """Write if the last write is long enough ago; to be called after every row."""

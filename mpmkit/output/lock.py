@@ -37,7 +37,8 @@ def locked(directory: Path) -> Iterator[None]:
         yield
     finally:
         with suppress(OSError):
-            path.unlink()  # before the lock is given up, so that no one else's file is removed
+            if os.fstat(file).st_size == 0:  # ours is empty; another one is the user's
+                path.unlink()  # before the lock is given up, so that no one else's file is removed
         os.close(file)
 
 

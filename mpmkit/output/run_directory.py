@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Container, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -10,11 +11,13 @@ from ..errors import CaseError
 from .atomic import cannot_write
 from .checkpoints import Checkpoints
 from .copies import Copies
-from .frames import LIST_NAME
+from .frames import LIST_NAME, frame_files
 from .lock import LOCK_NAME, alone_in
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
+PICTURES = ("outline", "spread_and_height", "energies")
+"""Names of the pictures of a report, without their ending."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
 
@@ -23,13 +26,13 @@ class RunDirectory:
     """The files of one run.
 
     Args:
-        path: the directory.
+        path: the directory; a leading ``~`` is the home folder.
         overwrite: whether ``claim`` may clear what an earlier run left there.
         keep: names of copies of meshes that it leaves in any case: the run may have been read from them.
     """
 
     def __init__(self, path: Path, overwrite: bool = False, keep: Container[str] = ()) -> None:
-        self.path = Path(path)
+        self.path = Path(os.path.expanduser(path))
         self.overwrite = overwrite
         self._keep = keep
 
@@ -127,11 +130,13 @@ class RunDirectory:
     def _clear(self) -> None:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
         written = [self.history, self.summary, *self.path.glob(PARTIAL)]
-        for directory, pattern in ((self.frames, "frame_*.vtu"), (self.report, "*.png")):
+        pictures = [self.report / f"{name}.png" for name in PICTURES]
+        frames = [*frame_files(self.frames), self.frames / LIST_NAME]
+        for directory, files in ((self.frames, frames), (self.report, pictures)):
             if directory.is_symlink():
                 written.append(directory)
             else:
-                written += [*directory.glob(pattern), *directory.glob(PARTIAL), directory / LIST_NAME]
+                written += [*files, *directory.glob(PARTIAL)]
         for path in (*written, self.case, self.log):
             path.unlink(missing_ok=True)
         Checkpoints(self.checkpoints).remove()

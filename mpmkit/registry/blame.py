@@ -6,13 +6,13 @@ Every call of a plug-in happens inside ``blaming_plugins``, while a case is vali
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ..contracts import KINDS, Plugin
 from ..errors import PluginFault, PluginStop, reason
 from .discovery import installed
+from .surroundings import Settings, restore, settings
 
 Used = Sequence[tuple[str, Plugin | type[Plugin]]]
 """Plug-ins, or their classes, each with its kind."""
@@ -20,14 +20,12 @@ NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
 """Modules of the framework that run on behalf of the plug-in that called them."""
 
 
-@contextmanager
-def blaming_plugins(
-    plugins: Used = (), when: Callable[[], tuple[int, float]] | None = None
-) -> Iterator[None]:
-    """Raise PluginStop where a plug-in raises an exception inside the block, or is at fault.
+class blaming_plugins:
+    """Raise PluginStop where a plug-in raises an exception inside the ``with`` block, or is at fault.
 
     Whatever a plug-in's own code raises is its fault: a ``SystemExit`` and an error class of the framework as
-    well, since neither is a plug-in's to raise. An interrupt is nobody's fault.
+    well, since neither is a plug-in's to raise. An interrupt is nobody's fault. One object serves any number
+    of blocks, also one inside another: every step of a run is one, so that a block must cost next to nothing.
 
     Args:
         plugins: those that are used; they tell whose the plain functions of a plug-in's module are.
@@ -36,24 +34,31 @@ def blaming_plugins(
     Raises:
         PluginStop: says which plug-in raised what, and where; the exception itself is its cause.
     """
-    try:
-        yield
-    except (KeyboardInterrupt, PluginStop):
-        raise
-    except PluginFault as fault:
-        plugin = fault.plugin
-        if plugin is None:
-            culprit = _culprit(fault, plugins, called=True)
-            if culprit is None:  # a program that uses the framework called it, and no plug-in did
-                raise TypeError(str(fault)) from fault
-            plugin = culprit[0]
-        raise _stop(f"{named(plugin)} {fault}", when, fault.particle) from fault
-    except BaseException as error:
-        culprit = _culprit(error, plugins)
-        if culprit is None:  # a fault of the framework, or of the user: not to be mistaken for a stranger's
-            raise
-        plugin, where = culprit
-        raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", when) from error
+
+    def __init__(self, plugins: Used = (), when: Callable[[], tuple[int, float]] | None = None) -> None:
+        self._plugins = plugins
+        self._when = when
+        self._settings: list[Settings] = []
+
+    def __enter__(self) -> None:
+        self._settings.append(settings())
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        restore(self._settings.pop())
+        if error is None or isinstance(error, KeyboardInterrupt | PluginStop):
+            return
+        if isinstance(error, PluginFault):
+            plugin = error.plugin
+            if plugin is None:
+                culprit = _culprit(error, self._plugins, called=True)
+                if culprit is None:  # a program that uses the framework called it, and no plug-in did
+                    raise TypeError(str(error)) from error
+                plugin = culprit[0]
+            raise _stop(f"{named(plugin)} {error}", self._when, error.particle) from error
+        culprit = _culprit(error, self._plugins)
+        if culprit is not None:  # else a fault of the framework, or of the user
+            plugin, where = culprit
+            raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", self._when) from error
 
 
 def named(plugin: object) -> str:

@@ -16,6 +16,7 @@ from ..contracts import KINDS, Plugin, hooks
 from ..errors import reason
 from .registered import Problem, Registered, Registry
 from .requirements import check
+from .surroundings import settings_and_log_kept
 
 CHOSEN = "MPMKIT_PLUGINS"
 """Environment variable that names, with commas between, the distributions to load beside mpmkit's own; all of
@@ -33,7 +34,9 @@ def discover() -> Registry:
             problems.append(Problem(distribution, name, _why_left_out(), left_out=True))
             continue
         try:
-            for one in _load(entry_point):
+            with settings_and_log_kept():
+                loaded = _load(entry_point)
+            for one in loaded:
                 (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
         except KeyboardInterrupt:
             raise

@@ -47,8 +47,8 @@ class Problem:
         """Whether a case that asks for this plug-in may mean this one."""
         if self.kind is not None and self.kind != kind:
             return False
-        if self.name == name:
-            return True
+        if self.name is not None:
+            return self.name == name
         return name in re.split(r"[.:_]", self.entry_point) or name.replace("-", "_") in self.entry_point
 
 

@@ -37,7 +37,7 @@ def new_plugin(name: str, kind: str, directory: Path | None = None) -> Path:
     Args:
         name: what a case file will say; ``mpmkit-`` before it is taken as the distribution's.
         kind: one of ``KINDS``.
-        directory: to be made; ``mpmkit-NAME`` unless given.
+        directory: to be made; default: ``mpmkit-NAME``.
 
     Raises:
         CaseError: the name cannot be one, or is taken, or the directory exists.

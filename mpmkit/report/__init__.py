@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..output import RunDirectory
 from ..output.atomic import cannot_write, replacing
+from ..output.run_directory import PICTURES
 
 __all__ = ["write_report"]
 
@@ -31,12 +32,12 @@ def write_report(run_directory: Path) -> list[Path]:
     except OSError as error:
         raise cannot_write(report, error) from error
     written = []
-    for picture in (outline, spread_and_height, energies):
+    for name, picture in zip(PICTURES, (outline, spread_and_height, energies), strict=True):
         with figure_style():
             figure = picture.draw(results)
             if figure is None:
                 continue
-            path = report / f"{picture.__name__.rpartition('.')[2]}.png"
+            path = report / f"{name}.png"
             with replacing(path) as partial:
                 figure.savefig(partial, format="png", dpi=DPI)
         written.append(path)

@@ -13,6 +13,7 @@ import xarray
 
 from ..errors import CaseError
 from ..output import RunDirectory, read_frames
+from ..output.netcdf import read_dataset
 from ..output.summary import trusted_rows, trusted_to_the_end
 
 
@@ -58,8 +59,7 @@ def read_results(path: Path) -> RunResults:
     """
     run = RunDirectory(path)
     try:
-        with xarray.open_dataset(run.history, engine="netcdf4") as history:
-            history.load()
+        history = read_dataset(run.history)
         summary = json.loads(run.summary.read_text(encoding="utf-8"))
         return RunResults(
             case=json.loads(run.case.read_text(encoding="utf-8")),

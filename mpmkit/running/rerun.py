@@ -11,6 +11,7 @@ import numpy as np
 from ..case.model import Case
 from ..errors import CaseError
 from ..output import RunDirectory
+from ..output.netcdf import read_dataset
 from .case_files import portable
 from .provenance import attributes
 from .resume import differences
@@ -28,13 +29,10 @@ def history_of(directory: Path) -> xarray.Dataset:
     Raises:
         CaseError: there is none, or it cannot be read.
     """
-    import xarray
-
     file = RunDirectory(directory).history
     try:
-        with xarray.open_dataset(file) as history:
-            return history.load()
-    except (OSError, ValueError) as error:
+        return read_dataset(file)
+    except (OSError, RuntimeError, ValueError) as error:
         raise CaseError(f"'{file}' cannot be read as the history of a run: {error}") from None
 
 

@@ -51,7 +51,7 @@ def differences(before: Any, now: Any, path: str = "") -> list[str]:
 
 
 def other_case(before: dict[str, Any], case: Case) -> list[str]:
-    """Where a case differs from one that ``portable`` gave; a file is told of by where it lies."""
+    """Where a case differs from one that ``portable`` gave; a file is named by where it lies."""
     paths = {file.where: file.path for file in named_files(case)}
     found = differences(before, json.loads(json.dumps(portable(case))))
     for number, sentence in enumerate(found):

@@ -50,8 +50,8 @@ def run(
         case: a validated case.
         out: run directory to write; nothing is written without one.
         overwrite: whether an earlier run in ``out`` may be replaced.
-        threads: threads to use; as many as pay off unless told.
-        listen: told of the progress a few times a second.
+        threads: threads to use; default: as many as pay off.
+        listen: called with the progress a few times a second.
         checkpoint_every: wall time, s, between two checkpoints in ``out``, from which ``resume`` goes on; one
             is written on Ctrl-C, and one before the last step, in any case.
 

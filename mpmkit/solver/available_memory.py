@@ -15,14 +15,23 @@ MIB = 2**20
 
 
 def available_memory() -> int:
-    """Bytes that can still be allocated.
+    """Bytes that can still be allocated."""
+    return tightest_limit()[0]
+
+
+def tightest_limit() -> tuple[int, str]:
+    """Bytes that can still be allocated, and what limits them, in words.
 
     It is the least of four: what the machine has free; what the control groups of this process may still take
     (version 1 and 2, by which containers and most batch systems hold a job); what Slurm has granted to the
     job; and what is left of the address space (``ulimit -v``).
     """
-    left = [psutil.virtual_memory().available, *_of_control_groups(), *_of_slurm(), *_of_address_space()]
-    return max(0, int(min(left)))
+    left = [(psutil.virtual_memory().available, "on this machine")]
+    left += [(size, "by the limit of its control group") for size in _of_control_groups()]
+    left += [(size, "by what Slurm has granted") for size in _of_slurm()]
+    left += [(size, "by ulimit -v") for size in _of_address_space()]
+    size, limit = min(left, key=lambda one: one[0])
+    return max(0, int(size)), limit
 
 
 def _of_control_groups() -> Iterator[float]:

@@ -48,7 +48,7 @@ def compressive_energy(p: Particles) -> float:
 
 def _require_stored(p: Particles, group: Group, author: Plugin, density: np.ndarray) -> None:
     """Of a law that does work of its own nothing is known: its energy is not guarded either."""
-    if group.law.passive:
+    if group.law.passive and not 0 <= density.min() <= density.max() < np.inf:
         part, modulus = group.part, group.density * group.wave_speed**2
         require_energy(author, density, p.number[part], p.volume_ratio[part], p.stress[part], modulus)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -56,11 +58,11 @@ class Grid:
         cells = np.rint((ends[:, 1] - ends[:, 0]) / spec.cell_size).astype(np.int64)
         return cls(ends[:, 0], cells, spec.cell_size, faces, friction, space.axes)
 
-    @property
+    @cached_property
     def dim(self) -> int:
         return len(self.cells)
 
-    @property
+    @cached_property
     def extent(self) -> np.ndarray:
         """Lengths of the domain, m."""
         return self.cells * self.cell_size
@@ -136,16 +138,11 @@ class Window:
         grid = self.grid
         self._cells = lowest_cell, highest_cell
         low, high = self.touchable(lowest_cell, highest_cell)
-        # One node beyond what is touched, which gets nothing but zeros: a particle on an upper face counts to
-        # the cell beyond it, and the last of the nodes there that a shape function names has no weight.
-        size = [int(n) + 1 for n in high - low + 1]
-        size[-1] += 1  # rows of pairs are as wide as a vector, and reach one node further
-        size += [1] * (3 - grid.dim)
         self.lower = low.astype(np.int64)
-        self.shape = (size[0], size[1], size[2])
-        self.strides = (size[1] * size[2], size[2], 1)
+        self.shape = self._shape(low, high)
+        self.strides = (self.shape[1] * self.shape[2], self.shape[2], 1)
         self.walls = np.stack([-low, grid.cells - low], axis=1).astype(np.int64)
-        count = size[0] * size[1] * size[2]
+        count = math.prod(self.shape)
         if count > self._capacity:
             self._capacity = count + count // 4
             self._stores = [_aligned(self._capacity * width + LANES) for width in (NODE, PAIR, 1)]
@@ -155,6 +152,20 @@ class Window:
         )
         self.nodes[:] = 0.0
         self.average[:] = 0.0
+
+    def _shape(self, low: np.ndarray, high: np.ndarray) -> tuple[int, int, int]:
+        """Nodes along each axis of a window over nodes that are touched, and along none of them one node."""
+        # One node beyond what is touched, which gets nothing but zeros: a particle on an upper face counts to
+        # the cell beyond it, and the last of the nodes there that a shape function names has no weight.
+        size = [int(n) + 1 for n in high - low + 1]
+        size[-1] += 1  # rows of pairs are as wide as a vector, and reach one node further
+        size += [1] * (3 - self.grid.dim)
+        return size[0], size[1], size[2]
+
+    def missing(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> int:
+        """Nodes that the window over these cells needs; 0 where the memory that it has is enough for it."""
+        count = math.prod(self._shape(*self.touchable(lowest_cell, highest_cell)))
+        return count if count > self._capacity else 0
 
     def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Which nodes touch a Coulomb wall, and the block's lower corner: all that outlives a window."""

@@ -88,7 +88,7 @@ class Guards:
             self.balance.accept(self._scene.particles)
 
     def check_step(self) -> None:
-        """Raise GuardStop if the step that was chosen is none, or far shorter than it once was."""
+        """Raise GuardStop if the chosen step is not a positive number, or far shorter than it once was."""
         s = self._scene
         step = s.time_step
         if not step > COLLAPSED * self._longest_step or not s.time + step > s.time:

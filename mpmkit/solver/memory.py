@@ -17,7 +17,7 @@ from ..kernels.scatter import NODE, PAIR
 from ..output import PARTICLE_VARIABLES
 from ..registry import audit
 from ..registry.blame import blaming_plugins
-from .available_memory import available_memory
+from .available_memory import tightest_limit
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -58,10 +58,12 @@ def expected_bytes(case: Case, particles: float) -> int:
 def checkpoint_bytes(case: Case, particles: float) -> int:
     """Memory that is held for a moment while a checkpoint is written.
 
-    It is a copy of the state of all particles, and of the rows of the history that are kept.
+    It is a copy of the state of all particles, of their last weights, and of the rows of the history that
+    are kept.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) / 2
-    return int(COPY * particles * DOUBLE * (_state_doubles(case) + kept))
+    weights = case.space_.dim * case.scheme.shape.support
+    return int(COPY * particles * DOUBLE * (_state_doubles(case) + weights + kept))
 
 
 def bytes_per_particle(case: Case) -> int:
@@ -129,19 +131,19 @@ def require_memory(case: Case) -> None:
     """
     particles = expected_particles(case)
     needed = expected_bytes(case, particles) + checkpoint_bytes(case, particles)
-    there = available_memory()
+    there, limit = tightest_limit()
     if needed > there:
         if window_nodes(case) * DOUBLES_PER_NODE * DOUBLE > needed / 2:
-            raise CaseError(_too_wide(case, needed, there))
+            raise CaseError(_too_wide(case, needed, f"{_gib(there)} is left for this run {limit}"))
         fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
-            f"and needs {_gib(needed)} of memory, but this machine has {_gib(there)} left for this run; "
+            f"and needs {_gib(needed)} of memory, but {_gib(there)} is left for this run {limit}; "
             f"use larger cells, fewer particles a cell, {fewer_rows}or a symmetry plane"
         )
 
 
-def _too_wide(case: Case, needed: float, there: float) -> str:
+def _too_wide(case: Case, needed: float, left: str) -> str:
     """The sentence where not the particles take the memory but the nodes around and between them."""
     lower, upper = _extent(case)
     spans = " × ".join(f"{span:.4g}" for span in upper - lower)
@@ -149,8 +151,8 @@ def _too_wide(case: Case, needed: float, there: float) -> str:
     closer = ", or bring the bodies closer together" if between else ""
     return (
         f"grid.cell_size is {case.grid.cell_size:g} m, and the window over all bodies{between} spans "
-        f"{spans} m: its {window_nodes(case):.3g} nodes need {_gib(needed)} of memory, but this machine has "
-        f"{_gib(there)} left for this run; use larger cells{closer}"
+        f"{spans} m: its {window_nodes(case):.3g} nodes need {_gib(needed)} of memory, but "
+        f"{left}; use larger cells{closer}"
     )
 
 

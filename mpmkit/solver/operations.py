@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -53,7 +52,11 @@ class SceneOperations:
         self._gradient_due = False
         self._begun = 0
         self._auditing = self._rehearsing = True
+        self._all_fluid = all(group.law.uses_equation_of_state for group in particles.groups)
         self._account = audit.Account()
+        self._for_order = operations_for(scheme.order, self)
+        self._for_velocity = operations_for(scheme.velocity, self)
+        self._for_volumetric = operations_for(scheme.volumetric, self)
         self.allocate()
 
     def allocate(self) -> None:
@@ -66,6 +69,8 @@ class SceneOperations:
         self._tables = np.zeros(max(2 * size, n * WIDEST))
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
+        self._radial_tables = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
+        self._axial_tables = self.base[:, 1:], self.weight[:, 1:], self.gradient[:, 1:]
         self.averager = Averager(self.particles, self.window, self.sorting, self.base, self.weight)
         self._rate = np.zeros(n)
         self._stepped = False
@@ -115,13 +120,12 @@ class SceneOperations:
         p, shape, dx = self.particles, self.scheme.shape, self.grid.cell_size
         if self._rehearsing:
             audit.rehearse_shape(shape, p.position, p.half_size, dx, self.radial)
-        tables = p.position, p.half_size, self.base, self.weight, self.gradient
         if self.radial:
-            radius, half_size, base, weight, gradient = (table[:, 0] for table in tables)
-            shape.fill_radial(radius, half_size, dx, base, weight, gradient, self.hoop)
-            tables = tuple(table[:, 1:] for table in tables)  # type: ignore[assignment]
-        position, half_size, base, weight, gradient = tables
-        shape.fill(position, half_size, dx, base, weight, gradient)
+            radius, radial_half_size = p.position[:, 0], p.half_size[:, 0]
+            shape.fill_radial(radius, radial_half_size, dx, *self._radial_tables, self.hoop)
+            shape.fill(p.position[:, 1:], p.half_size[:, 1:], dx, *self._axial_tables)
+        else:
+            shape.fill(p.position, p.half_size, dx, self.base, self.weight, self.gradient)
         audit.require_bounds(shape, p.position, dx, self.base, p.number)
         if self._begun % audit.LOOKS == 1:
             self.require_tables()
@@ -142,7 +146,7 @@ class SceneOperations:
         """One step of the chosen order."""
         self._account.begin()
         try:
-            self.scheme.order.step(operations_for(self.scheme.order, self), dt)
+            self.scheme.order.step(self._for_order, dt)
         except PluginFault:  # of one that was given nonsense, if the weights are wrong
             self.require_tables()
             raise
@@ -201,25 +205,26 @@ class SceneOperations:
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
         self._account.moves(dt)
         self._gradient_due = velocity_gradient
-        moves = self.gravity.any() or self.particles.velocity.any()
-        before = self._places() if self._rehearsing and moves else None
-        self.scheme.velocity.map_to_particles(operations_for(self.scheme.velocity, self), dt)
+        before = self._places() if self._rehearsing and self._moves() else None
+        self.scheme.velocity.map_to_particles(self._for_velocity, dt)
         by_itself = before is None or not np.array_equal(before, self._places())
         self._account.require_moved(self.scheme.velocity, dt, by_itself)
         if self._gradient_due:  # the velocity update has ways of its own
             self.update_velocity_gradient()
+
+    def _moves(self) -> bool:
+        """Whether a step moves any particle at all."""
+        return bool(self.gravity.any() or self.particles.velocity.any())
 
     def _places(self) -> np.ndarray:
         """Where some of the particles are, to see whether they are moved."""
         return self.particles.position[: audit.SAMPLE].copy()
 
     def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
-        self._account.advances(dt)
-        if not isinstance(flip, float | Real) or not math.isfinite(flip):
+        self._account.advances(dt, graded=self._gradient_due)
+        if not audit.is_finite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
-        if self._gradient_due:
-            self._account.graded()
         self._gradient_due = False
 
     def update_velocity_gradient(self) -> None:
@@ -306,20 +311,19 @@ class SceneOperations:
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
         """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
-        author, groups = self.scheme.volumetric, self.particles.groups
-        operations = operations_for(author, self)
+        author = self.scheme.volumetric
         if self._rehearsing:
             rehearsed = audit.Rehearsed(field)
-            treated = rehearsed.result(author, author.average(operations, rehearsed.field))
+            treated = rehearsed.result(author, author.average(self._for_volumetric, rehearsed.field))
         else:
-            treated = author.average(operations, field)
+            treated = author.average(self._for_volumetric, field)
         if treated is not field:
             audit.require_array(author, "average", treated, field.shape)
             if self._auditing:
                 audit.require_finite(author, "an average", treated, self.particles.number, [field])
-            if not all(group.law.uses_equation_of_state for group in groups):
+            if not self._all_fluid:
                 treated = treated.copy()  # which may be one that the treatment keeps
-                for group in groups:
+                for group in self.particles.groups:
                     if not group.law.uses_equation_of_state:
                         treated[group.part] = field[group.part]
         return treated
@@ -328,24 +332,24 @@ class SceneOperations:
         if self.scheme.redistribution.equal_boxes:
             return
         author = self.scheme.volumetric
-        asked = author.relaxation_rate(operations_for(author, self))
+        asked = author.relaxation_rate(self._for_volumetric)
         rate = audit.require_number(author, "relaxation_rate", asked)
         self.relaxation.relax(self.averager, rate, dt)
 
     # --- Fields in general
 
     def average(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
-        _require_field(values, len(self.particles))
+        _require_field(values, self._rate.shape)
         self.averager.at_nodes(values, self._weights(weighting))
         return self.averager.at_particles()
 
     def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
-        _require_field(values, len(self.particles))
+        _require_field(values, self._rate.shape)
         self.averager.at_nodes(values, self._weights(weighting))
         return self.window.average[:, 0].copy()
 
     def nodes_to_particles(self, nodal: np.ndarray) -> np.ndarray:
-        _require_field(nodal, len(self.window.average))
+        _require_field(nodal, self.window.average.shape[:1])
         self.window.average[:, 0] = nodal
         return self.averager.at_particles()
 
@@ -355,7 +359,7 @@ class SceneOperations:
         if weighting not in ("mass", "volume"):
             asked = f"asked for an average by {weighting!r}; it must be by 'mass' or 'volume'"
             raise PluginFault(None, asked)
-        if weighting == "mass" or all(group.law.uses_equation_of_state for group in p.groups):
+        if weighting == "mass" or self._all_fluid:
             return p.mass if weighting == "mass" else p.volume
         weights = p.volume.copy()
         for group in p.groups:
@@ -364,12 +368,12 @@ class SceneOperations:
         return weights
 
 
-def _require_field(values: Any, count: int) -> None:
-    """Raise PluginFault, of the plug-in that called, unless values are ``count`` real numbers."""
-    if not isinstance(values, np.ndarray) or values.shape != (count,) or values.dtype.kind not in "fiu":
+def _require_field(values: Any, shape: tuple[int, ...]) -> None:
+    """Raise PluginFault, of the plug-in that called, unless values are ``(count,)`` real numbers."""
+    if not isinstance(values, np.ndarray) or values.shape != shape or values.dtype.kind not in "fiu":
         what = (
             f"{values.shape} of {values.dtype}" if isinstance(values, np.ndarray) else type(values).__name__
         )
         raise PluginFault(
-            None, f"asked for an average of {what}; it must be an array of {count} real numbers"
+            None, f"asked for an average of {what}; it must be an array of {shape[0]} real numbers"
         )

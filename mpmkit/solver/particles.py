@@ -156,7 +156,7 @@ class Particles:
                 array[...] = array[local]
 
     def kinematics(self, group: Group) -> Kinematics:
-        """What the law of a group is told of its particles."""
+        """What the law of a group is given of its particles."""
         part, F = group.part, self.deformation_gradient
         return Kinematics(
             velocity_gradient=self.velocity_gradient[part],
@@ -178,7 +178,8 @@ class Particles:
         speed = require_number(group.law, "present_wave_speed", given)
         if not speed >= 0:
             raise PluginFault(group.law, f"has a wave speed of {speed} m/s; it must not be negative")
-        return speed if speed > STIFFER * group.wave_speed else group.wave_speed
+        unstrained = group.wave_speed
+        return speed if speed > STIFFER * unstrained else unstrained
 
     @property
     def nbytes(self) -> int:

@@ -62,7 +62,7 @@ class Relaxation:
         """Go on by a step, at the rate, 1/s, that the treatment asks for.
 
         Raises:
-            PluginFault: the rate is none.
+            PluginFault: the rate is not a number of at least 0.
         """
         if not rate >= 0:
             raise PluginFault(self._treatment, f"has a relaxation rate of {rate} /s; it must be positive")

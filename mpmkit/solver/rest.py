@@ -1,10 +1,13 @@
 """Fluids that rest in a tank or a channel begin with the pressure of their weight.
 
 Gravity that sets in at once makes a column bounce: its pressure swings between 0 and 2 ρ g (H - z) with the
-period 4 H/c, and a thin fluid damps that in no time that anyone waits for.
+period 4 H/c, and a thin fluid damps that in no time that anyone waits for. What does not rest from wall to
+wall has no such pressure to begin with: of it is said how long it swings.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -95,6 +98,55 @@ def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np
         above += abs(pull) * density * (top - bottom)
         ceiling = bottom
     return weight if ceiling is not None and abs(ceiling) < slack else None
+
+
+def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
+    """What the pressure of a fluid does that stands on a floor and begins without it; None where none does.
+
+    The first mode of a column of height h has the wave number k = π/(2 h) and the period 4 h/c; viscosity
+    damps it at the rate 2/3 mu k²/rho. A solid is not meant: its sound speed is its own, and it does swing.
+    """
+    gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
+    axis = int(np.argmax(np.abs(gravity)))
+    if not gravity[axis] or grid.faces[axis, 0 if gravity[axis] < 0 else 1] == OPEN:
+        return None
+    periods, seconds = [], []
+    for group in particles.groups:
+        if not group.law.uses_equation_of_state or not group.sound_speed:
+            continue
+        height = _height_on_floor(grid, particles, group, axis, upwards=gravity[axis] > 0)
+        if height > 0:
+            periods.append(4 * height / group.sound_speed)
+            viscosity = group.law.largest_viscosity(case.scale.rate)
+            damped = 6 * group.density * height**2 / (math.pi**2 * viscosity) if viscosity > 0 else math.inf
+            seconds.append(min(damped, case.until))
+    if not periods:
+        return None
+    slowest = int(np.argmax(seconds))
+    period, lasts = periods[slowest], seconds[slowest]
+    count = max(1, round(lasts / period))
+    how_long = "to the end" if lasts >= case.until else "until viscosity has damped it, at the earliest"
+    return (
+        "gravity sets in at once on a fluid that begins without pressure: its pressure swings between about "
+        f"0 and twice that of its weight, with a period of about 4 h/c = {period:.2g} s, {how_long} "
+        f"({count} {'period' if count == 1 else 'periods'}, {lasts:.2g} s); take means over a few periods"
+    )
+
+
+def _height_on_floor(grid: Grid, p: Particles, group: Group, axis: int, upwards: bool) -> float:
+    """Height, m, of the tallest body of a material that stands on a floor at rest; 0 if none does."""
+    tallest = 0.0
+    body = p.body[group.part]
+    for number in np.unique(body):
+        of_body = np.flatnonzero(body == number) + group.part.start
+        if p.velocity[of_body].any():
+            continue
+        low = (p.position - p.half_size)[of_body, axis].min()
+        high = (p.position + p.half_size)[of_body, axis].max()
+        gap = grid.extent[axis] - high if upwards else low
+        if gap < grid.cell_size / 2:
+            tallest = max(tallest, float(high - low))
+    return tallest
 
 
 def _ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:

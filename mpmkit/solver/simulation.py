@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import AbstractContextManager
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from .guards import Guards, stop
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
-from .rest import put_under_weight
+from .rest import put_under_weight, swinging
 from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
@@ -43,7 +42,7 @@ class Simulation:
         """
         Args:
             case: a validated case.
-            particles: a state to go on from; the case's bodies in their places unless told.
+            particles: a state to go on from; default: the case's bodies in their places.
             fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
 
         Raises:
@@ -54,8 +53,9 @@ class Simulation:
         self.fraction = fraction
         self.time = 0.0
         self.steps = 0
-        self._plugins = plugins_of(case)
-        with self.blaming():
+        self.blaming = blaming_plugins(plugins_of(case), lambda: (self.steps, self.time))
+        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
+        with self.blaming:
             self._set_up(particles)
 
     def _set_up(self, particles: Particles | None) -> None:
@@ -63,6 +63,9 @@ class Simulation:
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
         self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
+        begins = particles is None and not self.starts_under_weight
+        self.swinging = swinging(case, self.grid, self.particles) if begins else None
+        """What is said of a pressure that swings about that of the weight."""
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
@@ -101,13 +104,9 @@ class Simulation:
         self.limits = Limits(*map(float, state["limits/"]))
         restore(self.components, state)
 
-    def blaming(self) -> AbstractContextManager[None]:
-        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
-        return blaming_plugins(self._plugins, lambda: (self.steps, self.time))
-
     def choose_time_step(self) -> None:
         """Recompute the limits, and with them the step."""
-        with self.blaming():
+        with self.blaming:
             self._choose_time_step()
 
     def _choose_time_step(self) -> None:
@@ -124,10 +123,12 @@ class Simulation:
 
     def remarks(self) -> list[str]:
         """What the laws have to say of themselves, and what will change on the way."""
-        with self.blaming():
+        with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
             said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
+        elif self.swinging is not None:
+            said.append(self.swinging)
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
@@ -138,7 +139,7 @@ class Simulation:
 
     def warnings(self) -> list[str]:
         """What the user should know of the materials, and of the step that was chosen."""
-        with self.blaming():
+        with self.blaming:
             of_materials = [
                 sentence
                 for group in self.particles.groups
@@ -169,7 +170,7 @@ class Simulation:
         Raises:
             GuardStop: the run is beyond saving, see ``guards``, or a plug-in is at fault.
         """
-        with self.blaming():
+        with self.blaming:
             return self._advance(at_most)
 
     def _advance(self, at_most: float) -> float:
@@ -220,5 +221,5 @@ class Simulation:
 
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
-        with self.blaming():
+        with self.blaming:
             self.guards.check()

@@ -134,7 +134,7 @@ class Sorting:
 
     def _require_memory(self, cell: np.ndarray) -> None:
         """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
-        low, high = self.window.touchable(self._low, self._high)
-        if float(np.prod((high - low + 1).astype(float))) * NODE * 8 > available_memory():
+        missing = self.window.missing(self._low, self._high)
+        if missing and missing * NODE * 8 > available_memory():
             away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)
             raise Scattered(int(np.argmax(away)))

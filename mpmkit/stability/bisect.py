@@ -15,7 +15,7 @@ from .trial import trace
 FINE = 0.05
 """Fraction of the fine solution, which is also the smallest that is tried."""
 LARGEST = 2.0
-"""Largest fraction that is tried unless told: beyond it no explicit scheme is expected to be of use."""
+"""Largest fraction that is tried by default: beyond it no explicit scheme is expected to be of use."""
 CLOSE = 1.06
 """Ratio of the bracket's ends at which the search is over."""
 

@@ -20,9 +20,14 @@ WRONG = {
 }
 
 
+def picture_in(directory: Path) -> Path:
+    """Where the map of a directory lies."""
+    return directory / "stability.png"
+
+
 def draw(rows: list[dict], kinds: list[str], title: str, directory: Path) -> Path:
     """Draw the map into ``stability.png`` of a directory, which is made; returns its path."""
-    path = directory / "stability.png"
+    path = picture_in(directory)
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -40,7 +40,7 @@ def trace(case: Case, fraction: float) -> Trace:
     rows, stopped_by = [], None
     with np.errstate(all="ignore"):
         try:
-            with simulation.blaming():
+            with simulation.blaming:
                 for time in np.linspace(0.0, case.until, ROWS):
                     while simulation.time + simulation.time_step / 2 <= time:
                         simulation.advance()

@@ -10,6 +10,7 @@ import numpy as np
 import xarray
 
 from ..case.model import Case
+from ..output.netcdf import read_dataset
 from ..version import __version__
 from .labels import unit_of
 from .members import Member, dimensions, shown
@@ -69,8 +70,7 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
 
 
 def _add_history(fields: dict, path, names: tuple, place: tuple, time: np.ndarray) -> None:
-    with xarray.open_dataset(path) as history:
-        history.load()
+    history = read_dataset(path)
     end = float(history.time[-1])
     for name, series in history.data_vars.items():
         if series.dims != ("time",):

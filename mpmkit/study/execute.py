@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Executor, Future, as_completed
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, as_completed
 from contextlib import AbstractContextManager, nullcontext
 
-from ..errors import reason
+from ..errors import MpmkitError, reason
 from .members import Member
 from .processes import cores, processes
 from .store import Store
 from .work import FAILED, Outcome, run_member
 
+MOST_NAMED = 5
+"""Members that a sentence names."""
 LOST = 3
 """Times that workers may die around a member before it is given up."""
+
+
+class Unfinished(MpmkitError):
+    """Members of a study have no result: the exit status is 1, and the same study goes on from there."""
+
 
 Listener = Callable[[Member, Outcome], None]
 
@@ -33,12 +40,14 @@ def execute(
         members: of the study.
         store: keeps what each gave, as soon as it is there.
         threads: of each member.
-        executor: runs them; processes of this machine unless given.
-        workers: how many at once on this machine; as many as its cores hold of ``threads`` unless told.
-        listen: told of each member that has come to its end.
+        executor: runs them; default: processes of this machine.
+        workers: how many at once on this machine; default: as many as its cores hold of ``threads``.
+        listen: called for each member that has ended.
 
     Raises:
         KeyboardInterrupt: what has finished is kept.
+        Unfinished: the executor gave members up, as one does whose scheduler has died; what has finished is
+            kept.
         OutputError: the store cannot be written.
     """
     left = {number: member for number, member in enumerate(members) if not store.settled(member)}
@@ -58,19 +67,30 @@ def execute(
             else nullcontext(executor)
         )
         with pool as at_work:
-            broken = _run(at_work, {number: left[number] for number in lost}, threads, done)
+            broken, given_up = _run(at_work, {number: left[number] for number in lost}, threads, done)
+        if given_up:
+            titles = [left[number].title for number in sorted(given_up)]
+            raise Unfinished(
+                f"the executor gave up {named(titles, len(members))}; the same study goes on from there"
+            )
         for number in broken:
             lost[number] += 1
             if lost[number] >= LOST:
                 done(number, Outcome(FAILED, "the process that ran it died", {}, {}, b""))
 
 
+def named(titles: list[str], total: int) -> str:
+    """How many members there are of all, and which; no more than a few of them by name."""
+    few = ", ".join(titles[:MOST_NAMED]) + (", …" if len(titles) > MOST_NAMED else "")
+    return f"{len(titles)} of {total} members ({few})"
+
+
 def _run(
     pool: Executor, members: dict[int, Member], threads: int, done: Callable[[int, Outcome], None]
-) -> list[int]:
-    """Run members in a pool; returns those that were lost with it."""
+) -> tuple[list[int], list[int]]:
+    """Run members in a pool; returns those whose workers died, and those that the pool gave up."""
     futures: dict[Future, int] = {}
-    broken = []
+    broken, given_up = [], []
     try:
         for number, member in members.items():
             try:
@@ -84,6 +104,9 @@ def _run(
             except BrokenExecutor:
                 broken.append(number)
                 continue
+            except CancelledError:  # by nobody here: a scheduler that has died takes its futures along
+                given_up.append(number)
+                continue
             except Exception as error:  # of the way there or back
                 outcome = Outcome(FAILED, reason(error), {}, {}, b"")
             done(number, outcome)
@@ -91,4 +114,4 @@ def _run(
         for future in futures:
             future.cancel()
         raise
-    return broken
+    return broken, given_up

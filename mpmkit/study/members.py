@@ -55,10 +55,19 @@ class Member:
         return f"{readable}-{own}"
 
     @cached_property  # a mesh that it names may change meanwhile
+    def case_digest(self) -> str:
+        """Of the case, meshes included."""
+        return _digest(portable(self.case))
+
+    @cached_property
     def digest(self) -> str:
-        """Of everything that its result depends on: the case, meshes included, and what runs it."""
-        known = {"case": portable(self.case), "mpmkit": __version__, "plugins": plugins_used(self.case)}
-        return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest()
+        """Of everything that its result depends on: the case, and what runs it."""
+        plugins = plugins_used(self.case)
+        return _digest({"case": self.case_digest, "mpmkit": __version__, "plugins": plugins})
+
+
+def _digest(known: Any) -> str:
+    return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest()
 
 
 def dimensions(study: Study) -> dict[str, list[Any]]:
@@ -89,9 +98,11 @@ def members_of(study: Study) -> list[Member]:
 
 
 def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Member:
-    changes: Changes = dict(study.common)
+    own: Changes = {}
     for dimension, label in labels.items():
-        changes |= _changes(study, dimension, label)
+        own |= _changes(study, dimension, label)
+    common = {path: value for path, value in study.common.items() if path not in own}
+    changes = _outermost_first(common) | _outermost_first(own)
     title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
     try:
         data, remarks = _with_laws(base, changes)
@@ -101,6 +112,11 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
     except (CaseError, ValueError) as error:
         raise CaseError(f"study '{study.name}', member {title}: {error}") from None
     return Member(labels, resolved(case), case, remarks)
+
+
+def _outermost_first(changes: Changes) -> Changes:
+    """Changes in an order in which none undoes another: a part of a place comes after the place."""
+    return dict(sorted(changes.items(), key=lambda change: change[0].count(".")))
 
 
 def _with_laws(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:

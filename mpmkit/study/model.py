@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field, WithJsonSchema, model_validator
 
 from ..case.base import Model
+from .clashes import clash, replaced
 from .quantities import TAKEN
 
 
@@ -72,7 +73,28 @@ class Study(Model):
             twice = next((label for label in labels if labels.count(label) > 1), None)
             if twice is not None:
                 raise ValueError(f"vary.{name} has the value {twice} twice; keep one of them")
+        self._changes_no_place_twice()
         return self
+
+    def _changes_no_place_twice(self) -> None:
+        both = clash(
+            {
+                name: dict.fromkeys(path for changes in choices.values() for path in changes)
+                if isinstance(choices, dict)
+                else [name]
+                for name, choices in self.vary.items()
+            }
+        )
+        if both is not None:
+            raise ValueError(both)
+        lost = replaced(
+            self.common, [name for name, choices in self.vary.items() if isinstance(choices, list)]
+        )
+        if lost is not None:
+            raise ValueError(
+                f"common.{lost[0]} is a part of vary.{lost[1]}, which replaces it in every member; "
+                f"leave it out, or make it a part of the values of vary.{lost[1]}"
+            )
 
 
 def shown(label: Any) -> str:

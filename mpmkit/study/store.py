@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import xarray
 
@@ -15,41 +17,67 @@ from ..errors import CaseError
 from ..output import write_json
 from ..output.atomic import cannot_write, replacing
 from ..output.lock import LOCK_NAME, alone_in
-from .members import Member
+from ..output.netcdf import write_dataset
+from .members import Member, members_of, shown
 from .model import Study
 from .table import table
 from .work import FAILED, Outcome
 
+DRAWN = ("table.md", "histories.png", "differences.png", "chart.png")
+"""Files, beside ``results.nc``, that are made from all members together."""
+KINDS = {"labels": dict, "fate": str, "sentence": str, "summary": dict, "cost": dict}
+"""What every ``member.json`` has."""
+
 
 class Store:
-    """``study.json``, ``results.nc``, ``table.md``, figures, and ``members/`` with a directory each."""
+    """``study.json``, ``results.nc``, ``table.md``, figures, and ``members/`` with a directory each.
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.study = path / "study.json"
-        self.results = path / "results.nc"
+    Args:
+        path: the directory; a leading ``~`` is the home folder.
+        overwrite: whether results there that a study does not go on with may be replaced.
+    """
+
+    def __init__(self, path: Path, overwrite: bool = False) -> None:
+        self.path = Path(os.path.expanduser(path))
+        self.overwrite = overwrite
+        self.study = self.path / "study.json"
+        self.results = self.path / "results.nc"
 
     @contextmanager
-    def claimed(self, study: Study) -> Iterator[None]:
+    def claimed(self, study: Study, members: list[Member] | None = None) -> Iterator[None]:
         """As ``open``, and keep every other study out of the directory inside the block.
 
         Raises:
-            CaseError: there is something else in it.
+            CaseError: there is something in it that must not be replaced.
             OutputError: it cannot be written, or another study is at work there.
         """
         self._make()
         with alone_in(self.path, "study"):
-            self.open(study)
+            self.open(study, members)
             yield
 
-    def open(self, study: Study) -> None:
+    def open(self, study: Study, members: list[Member] | None = None) -> None:
         """Make the directory, or go on in one that holds a study.
 
+        Args:
+            study: that is to be run.
+            members: of the study; default: as ``members_of`` makes them.
+
         Raises:
-            CaseError: there is something else in it.
+            CaseError: there is something in it that must not be replaced.
             OutputError: it cannot be written.
         """
         self._make()
+        lost = self._replaced_by(members_of(study) if members is None else members)
+        if lost and not self.overwrite:
+            more = f" and of {len(lost) - 1} more" if len(lost) > 1 else ""
+            raise CaseError(
+                f"'{self.path}' holds results that this study would replace, those of the member "
+                f"'{next(iter(lost.values()))}'{more}: give --overwrite to replace them, or --out DIR to "
+                "write elsewhere"
+            )
+        if lost:
+            self._clear(lost)
         write_json(self.study, study.model_dump(mode="json"))
 
     def _make(self) -> None:
@@ -58,6 +86,36 @@ class Store:
             if filled and not self.study.exists():
                 raise CaseError(f"'{self.path}' exists and holds no study; choose another with --out")
             self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+
+    def _replaced_by(self, members: list[Member]) -> dict[Path, str]:
+        """Directories and names of the members kept here that a study has not, or with another case.
+
+        One that failed has no result to lose. The same case of another version of mpmkit, or of a plug-in,
+        is run again in its place.
+        """
+        wanted = {self.directory(member): member for member in members}
+        lost = {}
+        for path in sorted(self.path.glob("members/*/member.json")):
+            record = _record(path)
+            if record is None or record["fate"] == FAILED:
+                continue
+            member = wanted.get(path.parent)
+            if member is None or member.case_digest != record.get("case_digest"):
+                lost[path.parent] = ", ".join(map(shown, record["labels"].values()))
+        return lost
+
+    def _clear(self, directories: Iterable[Path]) -> None:
+        """Delete what was written for members, and of all members together; nothing else."""
+        try:
+            for directory in directories:
+                for name in ("member.json", "history.nc", "case.json"):
+                    (directory / name).unlink(missing_ok=True)
+                with suppress(OSError):  # something of the user's is in it
+                    directory.rmdir()
+            for path in (self.results, *(self.path / name for name in DRAWN)):
+                path.unlink(missing_ok=True)
         except OSError as error:
             raise cannot_write(self.path, error) from error
 
@@ -76,15 +134,41 @@ class Store:
         write_json(directory / "case.json", member.data)
         record = asdict(outcome)
         record.pop("history")
-        write_json(directory / "member.json", {"labels": member.labels, "digest": member.digest, **record})
+        digests = {
+            "digest": member.digest,
+            "case_digest": member.case_digest,
+            "history_digest": _digest(outcome.history),
+        }
+        write_json(directory / "member.json", {"labels": member.labels, **digests, **record})
 
     def outcome(self, member: Member) -> dict[str, Any] | None:
-        """What is kept of a member that ran, of this very case with these versions; None if none did."""
-        try:
-            record = json.loads((self.directory(member) / "member.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+        """What is kept of a member that ran, of this very case with these versions; None if none did.
+
+        What is damaged counts as nothing, so that the member is run again.
+        """
+        record = _record(self.directory(member) / "member.json")
+        return record if self._is_of(record, member) and self._whole(record, member) else None
+
+    def damaged(self, member: Member) -> Path | None:
+        """The file of a member that ran which is not as it was written; None if there is none."""
+        path = self.directory(member) / "member.json"
+        record = _record(path)
+        if record is None:
+            return path if path.exists() else None
+        if not self._is_of(record, member) or self._whole(record, member):
             return None
-        return record if record.get("digest") == member.digest else None
+        return self._history(member)
+
+    @staticmethod
+    def _is_of(record: dict[str, Any] | None, member: Member) -> TypeGuard[dict[str, Any]]:
+        return record is not None and record.get("digest") == member.digest
+
+    def _whole(self, record: dict[str, Any], member: Member) -> bool:
+        try:
+            content = self._history(member).read_bytes()
+        except OSError:
+            content = b""
+        return record.get("history_digest") == _digest(content)
 
     def settled(self, member: Member) -> bool:
         """Whether a member has come to an end that it would come to again: its own, or a guard's.
@@ -98,13 +182,30 @@ class Store:
         """Write everything there is, ``results.nc``, ``table.md`` and the figures."""
         from .figures import draw
 
-        with replacing(self.results) as partial:
-            dataset.to_netcdf(partial, engine="netcdf4")
+        write_dataset(dataset, self.results)
         with replacing(self.path / "table.md") as partial:
             partial.write_text(table(dataset), encoding="utf-8")
         draw(dataset, self.path)
 
     def history(self, member: Member) -> Path | None:
         """Its history; None where it left none."""
-        path = self.directory(member) / "history.nc"
+        path = self._history(member)
         return path if path.exists() and path.stat().st_size else None
+
+    def _history(self, member: Member) -> Path:
+        return self.directory(member) / "history.nc"
+
+
+def _record(path: Path) -> dict[str, Any] | None:
+    """What a ``member.json`` holds; None where it cannot be read as one."""
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not isinstance(record, dict):
+        return None
+    return record if all(isinstance(record.get(key), kind) for key, kind in KINDS.items()) else None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -43,7 +43,7 @@ def run_member(data: dict[str, Any], threads: int) -> Outcome:
 
     The seconds are those of the run itself: kernels are loaded, or compiled, before the clock starts.
     """
-    with TURN, np.errstate(all="ignore"):  # a run that diverges is told of by its guard
+    with TURN, np.errstate(all="ignore"):  # its guard reports a run that diverges
         return _run(data, threads)
 
 

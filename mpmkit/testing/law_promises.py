@@ -112,8 +112,8 @@ def wave_speed(subject: LawSubject) -> None:
 def largest_viscosity(subject: LawSubject) -> None:
     """No viscosity is larger than the law says: the stress over the rate that a stop at once takes away.
 
-    What an elastic wave may add within a step, rho c² Δt, is none. The law is sampled by itself, so that a
-    maximum between two samples may be higher by a thousandth.
+    What an elastic wave may add within a step, rho c² Δt, is not counted. The law is sampled by itself, so
+    that a maximum between two samples may be higher by a thousandth.
     """
     dt = 1e-9
     for fastest in (1.0, 37.0, 1e4):
@@ -135,8 +135,8 @@ def largest_viscosity(subject: LawSubject) -> None:
 
 
 def remarks(subject: LawSubject) -> None:
-    """Sentences that name the law, without a number that is none; and so the warnings of a scene of 1 m in
-    which 1 J/kg moves for 1 ms."""
+    """Sentences that name the law, without a number that is not finite; and so the warnings of a scene of
+    1 m in which 1 J/kg moves for 1 ms."""
     given = subject.density, subject.given_sound_speed
     for what, sentences in (
         ("remark", subject.law.remarks(*given)),
@@ -144,4 +144,4 @@ def remarks(subject: LawSubject) -> None:
     ):
         for sentence in sentences:
             require(subject.law.name in sentence, f"a {what} does not name the law: {sentence!r}")
-            require("nan" not in sentence.split(), f"a {what} has a number that is none: {sentence!r}")
+            require("nan" not in sentence.split(), f"a {what} has a number that is not finite: {sentence!r}")

@@ -42,7 +42,7 @@ def simulate(
         blocks: ``(lower corner, upper corner, material, velocity)``, corners in cells.
         domain: lower and upper end along each axis, in cells.
         faces: as in a case file.
-        gravity: m/s² along each axis; none unless given.
+        gravity: m/s² along each axis; default: none.
         fraction: of the critical step.
     """
     axes = AXES[space]

@@ -98,7 +98,7 @@ def random_rotations(n: int, seed: int = 1) -> np.ndarray:
 
 
 def simple_shear(rates: np.ndarray, along: int = 0, across: int = 2) -> np.ndarray:
-    """v along one axis that grows across another at these rates, 1/s; x over z unless told."""
+    """v along one axis that grows across another at these rates, 1/s; default: x over z."""
     L = np.zeros((len(rates), 3, 3))
     L[:, along, across] = rates
     return L

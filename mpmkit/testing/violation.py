@@ -27,7 +27,7 @@ def require_all(holds: np.ndarray, sentence: Callable[..., str], worst: np.ndarr
     Args:
         holds: what must be true throughout.
         sentence: from an index to what is wrong there.
-        worst: a measure of how wrong, the largest of which is told of; the first one unless given.
+        worst: a measure of how wrong; the largest is reported; default: the first.
     """
     __tracebackhide__ = True
     holds = np.asarray(holds)

@@ -9,7 +9,7 @@ import pytest
 from bands import below, close_to
 
 import mpmkit
-from mpmkit.solver.measures import mean_pressure
+from mpmkit.solver.particle_fields import mean_pressure
 
 pytestmark = pytest.mark.section(4)
 
@@ -156,6 +156,62 @@ def test_what_does_not_rest_begins_without_pressure(change):
     p = mpmkit.Simulation(mpmkit.parse_case(case)).particles
     assert (p.volume_ratio == 1).all()
     assert (p.pressure == 0).all()
+
+
+def open_column(material, width, **case):
+    """One half of a column with an open side, on a slip floor."""
+    return mpmkit.Simulation(
+        mpmkit.parse_case(
+            {
+                "space": "plane-strain",
+                "until": 1.0,
+                "grid": {
+                    "cell_size": 0.03,
+                    "domain": {"x": [0.0, 1.8], "z": [0.0, 0.36]},
+                    "faces": {"x_min": "symmetry", "z_min": "slip"},
+                },
+                "bodies": [
+                    {
+                        "shape": {"kind": "box", "lower": [0, 0], "upper": [width, HEIGHT]},
+                        "material": material,
+                    }
+                ],
+                **case,
+            }
+        )
+    )
+
+
+@pytest.mark.parametrize("material", [WATER, CONCRETE], ids=["water", "concrete"])
+def test_what_begins_without_pressure_says_how_it_swings_and_does(material):
+    """The first mode of a column: nothing at first, all but twice its weight after half of 4 H/c."""
+    simulation = open_column(material, 0.6)
+    (said,) = (sentence for sentence in simulation.remarks() if "begins without pressure" in sentence)
+    p, sound = simulation.particles, simulation.particles.groups[0].sound_speed
+    period = 4 * HEIGHT / sound
+    assert f"a period of about 4 h/c = {period:.2g} s, to the end ({1 / period:.0f} periods, 1 s)" in said
+    times, part = [], []
+    while simulation.time < period:
+        simulation.advance()
+        foot = (p.position[:, 0] < 0.03) & (p.position[:, 1] > 0.03) & (p.position[:, 1] < 0.09)
+        weight = material["density"] * G * (HEIGHT - p.position[foot, 1])
+        times.append(simulation.time)
+        part.append(float((mean_pressure(p)[foot] / weight).mean()))
+    assert abs(part[0]) < 0.01
+    assert times[int(np.argmax(part))] == pytest.approx(period / 2, rel=0.05)
+    assert 1.6 < max(part) < 2.1
+
+
+def test_viscosity_that_ends_the_swing_is_told_and_what_has_none_is_not():
+    """6 ρ h²/(π² mu) = 0.27 s for 200 Pa s: six periods of 0.049 s."""
+    (said,) = (s for s in open_column(WATER | {"viscosity": 200.0}, 0.6).remarks() if "gravity sets in" in s)
+    assert "until viscosity has damped it, at the earliest (6 periods, 0.27 s)" in said
+    for quiet in (
+        tank("plane-strain", [(WATER, HEIGHT)]),
+        open_column(WATER | {"sound_speed": 24.0}, 0.6, gravity=[0.0, 0.0]),
+        open_column(MADE["solid"]["material"], 0.6),
+    ):
+        assert not any("gravity sets in" in sentence for sentence in quiet.remarks())
 
 
 # --- Turning over ---------------------------------------------------------------------------------------

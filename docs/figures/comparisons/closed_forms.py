@@ -1,6 +1,6 @@
 """Closed forms of the slump test, that the comparisons draw beside the simulations.
 
-SI units, unless a name says otherwise. Slump, spread and times are those of the ASTM C143 cone unless told.
+SI units, unless a name says otherwise. Slump, spread and times are those of the ASTM C143 cone by default.
 """
 
 from __future__ import annotations

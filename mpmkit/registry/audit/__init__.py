@@ -12,7 +12,7 @@ nobody may write to. An order and a velocity update get no arrays: what they ask
 A rehearsal cannot see what only happens to other particles or in other steps, nor writes beyond the bands.
 """
 
-from .account import Account
+from .account import Account, is_finite
 from .equations_of_state import rehearse_equation_of_state
 from .fences import SAMPLE
 from .laws import rehearse_law, require_stress
@@ -39,6 +39,7 @@ __all__ = [
     "SAMPLE",
     "Account",
     "Rehearsed",
+    "is_finite",
     "particle_domain",
     "rehearse_equation_of_state",
     "rehearse_law",

@@ -55,9 +55,10 @@ class Account:
                 f"moved particles by {dt:.4g} s with nodal velocities advanced by {self._solved:.4g} s"
             )
 
-    def advances(self, dt: Any) -> None:
-        """The velocity update advances the particles."""
+    def advances(self, dt: Any, graded: bool) -> None:
+        """The velocity update advances the particles, and where ``graded`` updates their gradient."""
         self.advanced += seconds(dt)
+        self._gradient |= graded
 
     def graded(self) -> None:
         """The velocity gradient was updated."""
@@ -95,9 +96,14 @@ def seconds(dt: Any) -> float:
     Raises:
         PluginFault: it is no finite number; of the plug-in that asked.
     """
-    if not isinstance(dt, float | Real) or not math.isfinite(dt):
+    if not is_finite(dt):
         raise PluginFault(None, f"asked for a step of {dt!r} s; it must be a finite number")
     return float(dt)
+
+
+def is_finite(value: Any) -> bool:
+    """Whether a value that a plug-in gave is a finite real number."""
+    return (type(value) is float or isinstance(value, Real)) and math.isfinite(value)
 
 
 def _equal(done: float, dt: float) -> bool:

@@ -15,6 +15,7 @@ from ...errors import PluginFault
 from ...kernels.compile import CHUNK
 from ...kernels.locate import first_not_finite
 
+DOUBLE = np.dtype(np.float64)
 FEW = 20_000
 """Particles up to which all numbers are looked at in every step."""
 NOTHING = 1e-6
@@ -25,7 +26,7 @@ def require_number(plugin: Plugin, what: str, value: Any) -> float:
     """The number that a plug-in gave for ``what``, which may be no number, ``nan``, all the same.
 
     Raises:
-        PluginFault: it is none of Python's or numpy's real numbers, nor an array of one.
+        PluginFault: it is not a real number of Python or numpy, nor an array of one.
     """
     if isinstance(value, float):
         return value
@@ -48,6 +49,8 @@ def require_sentences(plugin: Plugin, what: str, value: Any) -> list[str]:
 
 def require_array(plugin: Plugin | None, what: str, returned: Any, shape: tuple[int, ...]) -> None:
     """Raise PluginFault unless what a method of a plug-in returned is an array of real numbers of a shape."""
+    if type(returned) is np.ndarray and returned.shape == shape and returned.dtype is DOUBLE:
+        return  # as nearly always, in every step
     if type(returned) not in (np.ndarray, np.memmap) or returned.shape != shape:
         raise PluginFault(
             plugin, f"returned {described(returned)} from {what}; it must be an array of shape {shape}"

@@ -90,7 +90,7 @@ def require_bounds(
     # A node is an integer: to be at least floor(x) - 1 it must be more than x - 2, and to be at most
     # floor(x) + 2 it must be at most x + 2.
     least, most = -2 - CLOSE, 3 - shape.support + CLOSE
-    if look(position.reshape(-1), 1 / cell_size, base.reshape(-1), least, most):
+    if look(position, 1 / cell_size, base, least, most):
         return
     away = base - position / cell_size
     bad = int(np.argmax(((away < least) | (away > most)).any(axis=1)))

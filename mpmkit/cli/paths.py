@@ -1,0 +1,34 @@
+"""Paths as they are typed."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..errors import CaseError
+
+
+class UserPath(click.Path):
+    """A path in which a leading ``~`` is the home folder, also where the shell leaves it: ``--out '~/x'``."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        path = os.path.expanduser(value)
+        if Path(path).parts[:1] and Path(path).parts[0].startswith("~"):  # ./~, a folder of that very name
+            path = os.path.abspath(path)
+        return super().convert(path, parameter, context)
+
+
+PATH = UserPath()
+
+
+def refuse_existing(path: Path, overwrite: bool) -> None:
+    """Make sure that a picture takes the place of nothing that is wanted.
+
+    Raises:
+        CaseError: there is something at its path, and nobody said that it may go.
+    """
+    if not overwrite and os.path.lexists(path):
+        raise CaseError(f"'{path}' exists: give --overwrite to replace it, or write elsewhere with --out")

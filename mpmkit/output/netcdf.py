@@ -1,0 +1,56 @@
+"""NetCDF files: written whole or not at all, and read, at exactly the path that is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .atomic import cannot_write, replacing
+
+if TYPE_CHECKING:
+    import xarray
+
+PIECE = bytes(2**20)
+MORE = 2**16
+"""Bytes that a NetCDF file may have beside its arrays."""
+
+
+def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
+    """Write a dataset; the file at ``path`` is whole at every moment.
+
+    Raises:
+        OutputError: it cannot be written; the sentence has the system's own reason, such as a full disk.
+    """
+    with replacing(path) as partial:
+        try:
+            # The absolute path, since xarray takes "~" at the begin of a path for the home folder.
+            dataset.to_netcdf(partial.absolute(), engine="netcdf4")
+        except (RuntimeError, OSError) as error:
+            if isinstance(error, OSError) and (error.errno or 0) > 0:
+                raise  # a reason of the system's
+            _meet_the_reason(partial, dataset.nbytes + MORE)
+            raise cannot_write(path, error) from error
+
+
+def read_dataset(path: Path) -> xarray.Dataset:
+    """Read a dataset into memory.
+
+    Raises:
+        OSError, RuntimeError, ValueError: there is none at the path, or a part of one.
+    """
+    import xarray
+
+    # With the engine, or xarray tries others on what is no NetCDF file, and warns of each.
+    with xarray.open_dataset(Path(path).absolute(), engine="netcdf4") as dataset:
+        return dataset.load()
+
+
+def _meet_the_reason(path: Path, size: int) -> None:
+    """Write as many plain bytes to the same place: the library says "HDF error", and the system says why.
+
+    Raises:
+        OSError: of the system, if it does not let them be written.
+    """
+    with path.open("wb") as file:
+        for _ in range(0, size, len(PIECE)):
+            file.write(PIECE)
