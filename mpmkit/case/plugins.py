@@ -15,10 +15,7 @@ SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution")
 def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
     """Kind and plug-in, for every plug-in that the case uses."""
     scheme = case.scheme
-    used = [
-        (kind, getattr(scheme, kind))
-        for kind in ("shape", "order", "velocity", "volumetric", "redistribution")
-    ]
+    used = [(kind, getattr(scheme, kind)) for kind in SCHEME]
     for body in case.bodies:
         law = body.material.constitutive_law
         used.append(("law", law))

@@ -177,7 +177,7 @@ class SceneOperations:
         volume = p.volume
         if forces:
             volumes.assign(p.mapped_pressure, self._treated(p.pressure))
-            if self.scheme.redistribution.equal_boxes:
+            if self.stage.acts:
                 volume = p.volume * p.quadrature
         self._scatter(
             w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
@@ -296,16 +296,27 @@ class SceneOperations:
         return pressure
 
     def _follow_domains(self, dt: float) -> None:
+        p = self.particles
+        if not self.scheme.redistribution.equal_boxes:
+            self._follow_deformation(slice(0, len(p)), dt)
+        elif not self._all_fluid:
+            for group in p.groups:
+                if not group.law.uses_equation_of_state:
+                    self._follow_deformation(group.part, dt)
+        self.stage.follow(dt)
+
+    def _follow_deformation(self, part: slice, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
-        if self.scheme.redistribution.equal_boxes:
-            self.stage.follow(dt)
-            return
-        least = self._no_rows if p.least_half_size is None else p.least_half_size
-        domains.follow_strain(p.velocity_gradient, dt, p.box, least, p.half_size)
+        least = self._no_rows if p.least_half_size is None else p.least_half_size[part]
+        domains.follow_strain(p.velocity_gradient[part], dt, p.box[part], least, p.half_size[part])
         if rule == "stretch":
-            domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
+            assert p.deformation_gradient is not None
+            assert p.initial_half_size is not None
+            F, initial = p.deformation_gradient[part], p.initial_half_size[part]
+            domains.follow_stretch(F, initial, p.half_size[part])
         elif rule == "volume":
-            domains.follow_volume(p.volume_ratio, p.initial_half_size, p.half_size)
+            assert p.initial_half_size is not None
+            domains.follow_volume(p.volume_ratio[part], p.initial_half_size[part], p.half_size[part])
 
     # --- Volumes
 

@@ -7,7 +7,7 @@ import numpy as np
 from ...kernels.gather import gather_scalar
 from ...kernels.scatter import PAIR, scatter_pairs
 from ...kernels.splines import PARTS, fill_parts
-from .mirrored import Mirrored
+from .mirrored import Mirrored, require_field
 
 
 class BoxCells:
@@ -46,6 +46,7 @@ class BoxCells:
         return filling
 
     def least_beside(self, filling: np.ndarray) -> np.ndarray:
+        require_field(filling, self.block.count, "cells")
         block = filling.reshape(self.block.shape)
         least = block.copy()
         for axis in range(self._dim):
@@ -57,7 +58,6 @@ class BoxCells:
         return least
 
     def at_particles(self, values: np.ndarray) -> np.ndarray:
-        block, field, out = self.block, self.block.empty(), np.empty(len(self._base))
-        field[:, 0] = values
+        block, field, out = self.block, self.block.field(values), np.empty(len(self._base))
         gather_scalar(self._dim, PARTS)(field, block.strides, block.lower, self._base, self._part, out)
         return out

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...contracts import redistribution as contract
+from ...errors import PluginFault
 from ...kernels.gather import gather_scalar
 from ...kernels.scatter import PAIR, scatter_pairs
 from ...kernels.splines import SUPPORT, fill_splines, gather_slope
-from .mirrored import Mirrored
+from .mirrored import Mirrored, require_field
 
 
 class SplineLattice:
@@ -36,6 +37,8 @@ class SplineLattice:
         return crowding
 
     def average(self, values: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:
+        require_field(values, len(self._base), "particles")
+        values = np.ascontiguousarray(values, dtype=np.float64)
         sums = self._sums(values, self._size if weight is None else weight)
         average = np.divide(sums[:, 1], sums[:, 0], out=np.zeros(len(sums)), where=sums[:, 0] > 0)
         self.block.fill(average)
@@ -44,19 +47,20 @@ class SplineLattice:
     def at_particles(self, nodal: np.ndarray) -> np.ndarray:
         block, out = self.block, np.empty(len(self._base))
         gather_scalar(self._dim, SUPPORT)(
-            self._padded(nodal), block.strides, block.lower, self._base, self._weight, out
+            block.field(nodal), block.strides, block.lower, self._base, self._weight, out
         )
         return out
 
     def slope_at_particles(self, nodal: np.ndarray) -> np.ndarray:
         block, slope = self.block, np.empty(self._base.shape)
-        field = self._padded(nodal)[:, 0]
+        field = block.field(nodal)[:, 0]
         gather_slope(self._dim)(
             field, block.strides, block.lower, self._base, self._weight, self._gradient, slope
         )
         return slope
 
     def least_around(self, nodal: np.ndarray) -> np.ndarray:
+        require_field(nodal, self.block.count, "nodes")
         least = np.pad(nodal.reshape(self.block.shape), 1)
         for axis in range(self._dim):
             along = np.moveaxis(least, axis, 0)
@@ -66,7 +70,9 @@ class SplineLattice:
         return least
 
     def nearest(self, other: contract.Lattice, nodal: np.ndarray) -> np.ndarray:
-        assert isinstance(other, SplineLattice)
+        if not isinstance(other, SplineLattice):
+            raise PluginFault(None, "asked for the nearest nodes of what is no lattice of this scene")
+        require_field(nodal, other.block.count, "nodes")
         found = nodal.reshape(other.block.shape)
         times = round(other.spacing / self.spacing)
         for axis, (count, low, their_low) in enumerate(
@@ -91,8 +97,3 @@ class SplineLattice:
             block.fold(sums)
             pairs[:, column] = sums
         return pairs
-
-    def _padded(self, nodal: np.ndarray) -> np.ndarray:
-        field = self.block.empty()
-        field[:, 0] = nodal
-        return field

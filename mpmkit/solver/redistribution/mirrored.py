@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
+from ...errors import PluginFault
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.vectors import LANES
+from ...registry import audit
 from ..grid import Grid, Window
 
 PADDING = 2
 """Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
+
+
+def require_field(values: Any, count: int, of: str) -> None:
+    """Raise PluginFault, of the plug-in that called, unless values are ``(count,)`` real numbers."""
+    if not isinstance(values, np.ndarray) or values.shape != (count,) or values.dtype.kind not in "fiub":
+        raise PluginFault(
+            None,
+            f"gave {audit.described(values)} as a field; it must have one number for each of {count} {of}",
+        )
 
 
 class Mirrored:
@@ -45,6 +57,13 @@ class Mirrored:
     def empty(self, width: int = 1) -> np.ndarray:
         """Zeros, ``(count, width)``, with room behind them for a row of pairs."""
         return np.zeros(self.count * width + LANES)[: self.count * width].reshape(self.count, width)
+
+    def field(self, values: np.ndarray) -> np.ndarray:
+        """Values of the nodes with room behind them, ``(count, 1)``, for the kernels that gather."""
+        require_field(values, self.count, "nodes or cells of the lattice")
+        field = self.empty()
+        field[:, 0] = values
+        return field
 
     def fold(self, values: np.ndarray) -> None:
         """Add what lies behind the faces to its images, in place; it is zero afterwards."""

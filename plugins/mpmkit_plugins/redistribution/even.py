@@ -36,10 +36,24 @@ class Even(Redistribution):
     name = "even"
     api_version = 2
     citation = (
-        "after Tartakovsky & Meakin, Phys. Rev. E 72 (2005) 026301, and Baumgarten & Kamrin, "
-        "Int. J. Numer. Meth. Eng. 124 (2023) 1334-1367"
+        "shift after Lind, Xu, Stansby & Rogers, J. Comput. Phys. 231 (2012) 1499-1523; quadrature errors: "
+        "Baumgarten & Kamrin, Int. J. Numer. Meth. Eng. 124 (2023), doi:10.1002/nme.7217"
     )
     equal_boxes = True
+
+    def cautions(self, case) -> list[str]:
+        said = []
+        if case.scheme.splitting:
+            said.append(
+                "scheme.splitting is true, but redistribution 'even' does not need it: boxes of fluids keep "
+                "equal sides, and are hardly ever longer than a cell"
+            )
+        if case.scheme.shape.particle_domain == "stretch":
+            said.append(
+                "redistribution 'even' gives boxes of fluids equal sides; the domain 'stretch' of "
+                f"scheme.shape '{case.scheme.shape.name}' acts on solids only"
+            )
+        return said
 
     def is_due(self, shear: float) -> bool:
         return shear >= DUE
