@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from mpmkit.case import parse_case
+from mpmkit.case.plugins import cautions
+from mpmkit.contracts import Redistribution
 from mpmkit.solver.simulation import Simulation
 
 DX, CELLS = 0.1, 6
@@ -207,6 +209,104 @@ def test_a_solid_keeps_its_places_and_boxes():
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     for name in ("position", "box", "volume_ratio", "volume", "quadrature"):
         np.testing.assert_array_equal(getattr(p, name)[solid], before[name], err_msg=name)
+
+
+def test_solids_alone_are_left_as_they_are():
+    """Nothing to do, to the bit: no fluid, no redistribution."""
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    one, other = (filled("plane-strain", SEAMED, velocity, [RUBBER], kind) for kind in ("even", "none"))
+    for _ in range(10):
+        one.advance(), other.advance()
+    assert np.ptp(one.particles.box) > 0  # they follow the strain
+    for name, array in other.particles.arrays().items():
+        np.testing.assert_array_equal(one.particles.arrays()[name], array, err_msg=name)
+
+
+@pytest.mark.parametrize("rule", ["stretch", "volume", "fixed", "strain"])
+def test_beside_a_fluid_boxes_of_a_solid_follow_the_rule_of_the_shape_function(rule):
+    """And those of the fluid hold its volume, but where the rule is that boxes stay as they are."""
+    shape = {"name": "cpgimp", "domain": rule}
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    simulation = filled("plane-strain", SEAMED, velocity, [FLUID, RUBBER], shape=shape)
+    for _ in range(20):
+        simulation.advance()
+    p = simulation.particles
+    fluid, solid = (group.part for group in p.groups)
+    if rule == "stretch":
+        C = np.einsum("pki,pkj->pij", p.deformation_gradient[solid], p.deformation_gradient[solid])
+        values, vectors = np.linalg.eigh(C)
+        U = np.einsum("pik,pk,pjk->pij", vectors, np.sqrt(values), vectors)
+        expected = p.initial_half_size[solid] * np.stack([U[:, 0, 0], U[:, 1, 1]], axis=1)
+    elif rule == "volume":
+        expected = p.initial_half_size[solid] * p.volume_ratio[solid, None] ** 0.5
+    else:
+        expected = np.full(p.half_size[solid].shape, DX / 4) if rule == "fixed" else p.box[solid]
+    np.testing.assert_allclose(p.half_size[solid], expected, rtol=1e-10)
+    held = np.full(2, DX / 4) if rule == "fixed" else np.sqrt(p.volume[fluid])[:, None] / 2
+    np.testing.assert_allclose(
+        p.half_size[fluid], np.broadcast_to(held, p.half_size[fluid].shape), rtol=1e-10
+    )
+
+
+def test_a_redistribution_without_equal_boxes_is_due_and_weighs():
+    """Shear is added up for it, too, and its weights enter the internal force."""
+
+    class Weighs(Redistribution):
+        name = "weighs"
+        api_version = 2
+        citation = "none"
+
+        def is_due(self, shear):
+            return shear > 0.01
+
+        def redistribute(self, ops, time):
+            ops.weigh(np.zeros(len(ops.shear_rate())))
+
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    case = filled("plane-strain", SEAMED, velocity).case
+    case = case.model_copy(update={"scheme": case.scheme.model_copy(update={"redistribution": Weighs()})})
+    simulation = Simulation(case)
+    while simulation.operations.stage.shear <= 0.01:
+        simulation.advance()
+    simulation.advance()
+    before = simulation.particles.velocity.copy()
+    np.testing.assert_array_equal(simulation.particles.quadrature, 0.0)
+    simulation.operations.map_to_grid()
+    forces = simulation.operations.window.nodes[:, 3:5]  # after mass and two components of the velocity
+    np.testing.assert_array_equal(forces, 0.0)
+    np.testing.assert_array_equal(simulation.particles.velocity, before)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "sentence"),
+    [
+        ({"splitting": True}, "scheme.splitting is true, but redistribution 'even' does not need it"),
+        (
+            {"shape": {"name": "cpgimp", "domain": "stretch"}},
+            "'stretch' of scheme.shape 'cpgimp' acts on solids",
+        ),
+    ],
+)
+def test_what_even_does_not_need_is_said(scheme, sentence):
+    assert any(sentence in said for said in cautions(filled("plane-strain", **scheme).case))
+    assert not any(sentence in said for said in cautions(filled("plane-strain").case))
+
+
+@pytest.mark.parametrize("shape", ["linear", {"name": "cpgimp", "domain": "fixed"}])
+def test_even_works_with_boxes_that_the_weights_do_not_see(shape):
+    """Cells are weighed with the boxes that hold the volume, whatever the weights are made of."""
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    simulation = filled("plane-strain", SEAMED, velocity, shape=shape, order="musl")
+    p = disorder(simulation)
+    done = 0
+    for _ in range(60):
+        before = simulation.operations.stage.time
+        simulation.advance()
+        done += simulation.operations.stage.time < before
+    simulation.check()
+    assert done > 0
+    np.testing.assert_allclose(p.box, np.sqrt(p.volume)[:, None].repeat(2, axis=1) / 2, rtol=1e-2)
+    assert 0.5 <= p.quadrature.min() < p.quadrature.max() <= 2.0
 
 
 @spaces

@@ -14,6 +14,7 @@ from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
+from ..kernels.splines import SUPPORT
 from ..output import PARTICLE_VARIABLES
 from ..registry import audit
 from ..registry.blame import blaming_plugins
@@ -27,8 +28,8 @@ PASSING = 4
 """Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
 """A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
-SPLINES, PARTS, MIRRORED = 3, 2, 8
-"""Of a redistribution: nodes and cells an axis that a particle touches, and doubles that a node holds."""
+MIRRORED = 5
+"""Doubles of a node of a lattice of a redistribution: its sums, its crowding, and its room."""
 COPY = 1.125
 """Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
 MARGIN = 5
@@ -79,13 +80,12 @@ def bytes_per_particle(case: Case) -> int:
 
 
 def _redistributed(case: Case) -> int:
-    """Bytes a particle that a redistribution holds for a moment: two lattices, the cells, and shifts."""
+    """Bytes a particle that a redistribution holds for a moment: splines of two lattices, its shift."""
     if not redistributes(case.scheme.redistribution):
         return 0
     dim = case.space_.dim
-    bases, splines, parts = 3 * dim * INDEX, 2 * 2 * dim * SPLINES, dim * PARTS
-    vectors_and_numbers = 4 * dim + 6
-    return bases + DOUBLE * (splines + parts + vectors_and_numbers)
+    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * 2 * dim * SUPPORT, 2 * dim, 4
+    return INDEX * bases + DOUBLE * (splines + shift_and_slope + numbers)
 
 
 def _doubles_per_node(case: Case) -> float:

@@ -162,10 +162,11 @@ class Stage:
     def _require(self, given: np.ndarray, what: str, shape: tuple[int, ...]) -> None:
         """Raise PluginFault unless what the redistribution gave are finite numbers in this shape."""
         p, author = self._particles, self.redistribution
+        whole = isinstance(given, np.ndarray) and given.dtype.kind != "f"
+        found = audit.described(given) + (f" of {given.dtype}" if whole else "")
         if not isinstance(given, np.ndarray) or given.shape != shape or given.dtype.kind != "f":
             raise PluginFault(
-                author,
-                f"gave {audit.described(given)} as {what}; it must be an array of shape {shape} of float64",
+                author, f"gave {found} as {what}; it must be an array of shape {shape} of float64"
             )
         audit.require_finite(author, what, given, p.number, [p.position, p.volume, p.velocity_gradient])
 
