@@ -158,10 +158,12 @@ class TestRest:
 
     def test_of_a_slump(self):
         """It falls, and comes to rest long before the end; from then on hardly any energy is left."""
-        changes = ["grid.cell_size=0.03", 'grid.domain={"r": [0, 0.36], "z": [0, 0.33]}', "until=2.1"]
+        changes = ["grid.cell_size=0.03", 'grid.domain={"r": [0, 0.36], "z": [0, 0.33]}', "until=2.6"]
         history = mpmkit.run(mpmkit.load_case(CASES / "slump.json", [*changes, "output.report=false"]))
         since = history.attrs["at_rest_since"]
-        assert 1.0 < since < 1.8
+        assert (
+            1.2 < since < 2.0
+        )  # it slows below a 100th of its fastest at 1.4 s, and must keep still for 0.5 s
         still = history.time.values >= since
         energy = history.kinetic_energy.values
         assert energy[still].max() <= 1.1e-4 * energy.max()

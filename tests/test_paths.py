@@ -13,7 +13,7 @@ from studies import CASE, Now, status
 
 import mpmkit
 from mpmkit.case import parse_case
-from mpmkit.kernels.code_cache import cache_root
+from mpmkit.kernels.code_folders import cache_root
 from mpmkit.output.netcdf import read_dataset, write_dataset
 
 
@@ -24,7 +24,7 @@ def home(tmp_path, monkeypatch):
     home.mkdir()
     here.mkdir()
     # Caches of compiled code and of fonts stay where they are: they take long to make anew.
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_root()))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_root().parent))
     monkeypatch.setenv("MPLCONFIGDIR", matplotlib.get_configdir())
     monkeypatch.setenv("HOME", str(home))
     monkeypatch.setenv("USERPROFILE", str(home))

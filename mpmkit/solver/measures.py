@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +27,11 @@ class Measures:
     initial_height: float
     axis_position: np.ndarray
     """Horizontal position of the body's axis, m, from the grid's corner."""
+
+    @cached_property
+    def _planes(self) -> list[float | None]:
+        """Where a plane or axis of symmetry cuts each horizontal axis of the grid."""
+        return [_symmetry_plane(self.case, self.grid, a) for a in range(self.grid.dim - 1)]
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
@@ -61,14 +68,14 @@ class Measures:
 
     def spread(self, p: Particles) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
-        grid, diameters = self.grid, []
-        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, grid.periodic)
+        grid, periodic, diameters = self.grid, self.grid.periodic, []
+        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic)
         for a, (low, high) in enumerate(ends.tolist()):
-            if grid.periodic[a] or low > high:
+            if periodic[a] or low > high:
                 continue
-            plane = _symmetry_plane(self.case, grid, a)
+            plane = self._planes[a]
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
-        return float(np.mean(diameters)) if diameters else np.nan
+        return sum(diameters) / len(diameters) if diameters else math.nan
 
     def fractured(self, p: Particles) -> float:
         """Part of the volume in boxes longer than a cell: its neighbours share no cell with it any more."""
