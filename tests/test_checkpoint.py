@@ -90,13 +90,14 @@ def stopped_at_half(case, steps=45):
     return whole, again
 
 
-ORDERS, SHAPES = ("usl", "usf", "musl"), ("cpgimp", "linear")
+ORDERS, SHAPES, REDISTRIBUTIONS = ("usl", "usf", "musl"), ("cpgimp", "linear"), ("none", "even")
 OF_EACH_SPACE = ("slump_fast", "slump_quarter", "film")
 
 
-@every_pair("name, order, shape", COARSE, ORDERS, SHAPES)
-def test_every_case_with_every_order_and_shape(name, order, shape):
-    schemes = [f"scheme.order={order}", f"scheme.shape={shape}"]
+@every_pair("name, order, shape, redistribution", COARSE, ORDERS, SHAPES, REDISTRIBUTIONS)
+def test_every_case_with_every_order_and_shape(name, order, shape, redistribution):
+    kinds = {"order": order, "shape": shape, "redistribution": redistribution}
+    schemes = [f"scheme.{kind}={chosen}" for kind, chosen in kinds.items()]
     case = load_case(CASES / f"{name}.json", [*COARSE[name], *schemes])
     assert_same(*stopped_at_half(case))
 
@@ -142,6 +143,16 @@ def test_what_walls_domains_and_velocities_remember(changes):
     case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], *changes])
     whole, again = stopped_at_half(case, 300)
     assert len(whole.particles) > 56 or "stick" in changes[0]
+    assert_same(whole, again)
+
+
+def test_what_a_redistribution_remembers():
+    """The shear since the last time, and the parts of their volumes that particles keep in between."""
+    changes = ["scheme.redistribution=even", "scheme.splitting=false"]
+    case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], *changes])
+    whole, again = stopped_at_half(case, 300)
+    assert np.ptp(whole.particles.quadrature) > 0.01
+    assert whole.operations.stage.shear > 0
     assert_same(whole, again)
 
 

@@ -98,7 +98,8 @@ def test_what_exists_is_left_alone(what, tmp_path, capsys):
 
 def test_an_unknown_kind_is_refused(tmp_path, capsys):
     assert new_plugin("my-own", "--kind", "pump", "--out", tmp_path / "new") == 2
-    assert "'law', 'shape', 'order', 'velocity', 'volumetric', 'equation_of_state'" in capsys.readouterr().err
+    kinds = "'law', 'shape', 'order', 'velocity', 'volumetric', 'redistribution', 'equation_of_state'"
+    assert kinds in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 
 

@@ -1,6 +1,7 @@
 """What a run will cost: counts, limits, and memory against what is really allocated."""
 
 import json
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,39 @@ def test_expected_memory_is_that_of_the_arrays(file, overrides):
     window = operations.window
     total = held + sum(a.base.nbytes for a in (window.nodes, window.pairs, window.average)) + 8 * PASSING * n
     assert expected_bytes(case, n) == pytest.approx(total, rel=0.25)
+
+
+@pytest.mark.parametrize("file", ["slump.json", "slump_quarter.json"])
+def test_expected_memory_has_room_for_a_redistribution(file):
+    """What it takes while it works, at most, is what the estimate is larger by."""
+    plain, case = (
+        load_case(CASES / file, [f"scheme.redistribution={chosen}"]) for chosen in ("none", "even")
+    )
+    simulation = Simulation(case)
+    operations, n = simulation.operations, len(simulation.particles)
+    operations.begin()
+    simulation.particles.velocity_gradient[:, 0, 1] = 1.0
+    peaks = []
+    for _ in range(2):  # at first there is code to be loaded as well
+        operations.stage.shear = operations.stage.time = 0.1
+        tracemalloc.start()
+        try:
+            assert operations.stage.redistribute_if_due(operations.window, operations.sorting)
+            peaks.append(tracemalloc.get_traced_memory()[1])
+        finally:
+            tracemalloc.stop()
+        operations.begin()
+    peak = peaks[-1]
+    estimate = expected_bytes(case, n) - expected_bytes(plain, n)
+    assert peak < estimate < 1.5 * peak
+
+
+def test_a_case_with_a_redistribution_is_planned():
+    coarse = ["grid.cell_size=0.02", "grid.domain.z=[0,0.32]", "scheme.splitting=false", "until=0.1"]
+    plain = plan(load_case(CASES / "slump.json", coarse))
+    found = plan(load_case(CASES / "slump.json", [*coarse, "scheme.redistribution=even"]))
+    assert found["particles"] == plain["particles"]
+    assert found["memory_bytes"] > plain["memory_bytes"]
 
 
 @pytest.mark.parametrize("file", ["slump_ferreira.json", "slump_quarter_fine.json"])

@@ -17,6 +17,7 @@ from mpmkit.contracts import (
     ElastoviscoplasticLaw,
     EquationOfState,
     GeneralisedNewtonianLaw,
+    Redistribution,
     ShapeFunction,
     StateVariable,
     UpdateOrder,
@@ -404,6 +405,64 @@ def test_a_volumetric_treatment_that_cannot_be_used(average, rate, reason):
             return rate
 
     assert reason in blamed("volumetric", Bad)
+
+
+@pytest.mark.parametrize(
+    ("use", "reason"),
+    [
+        (
+            lambda ops: ops.shift(np.zeros((N - 1, 2))),
+            "gave an array of shape (63, 2) as a displacement; it must",
+        ),
+        (lambda ops: ops.shift(np.full((N, 2), np.nan)), "gave particle 0 a displacement that is not finite"),
+        (lambda ops: ops.shift(None), "gave nothing as a displacement"),
+        (
+            lambda ops: ops.shift(np.zeros((N, 2), dtype=int)),
+            "an array of shape (64, 2) of int64 as a displace",
+        ),
+        (lambda ops: ops.scale_volume_ratio(np.ones(3)), "gave an array of shape (3,) as a factor of J"),
+        (lambda ops: ops.scale_volume_ratio(np.zeros(N)), "gave 0 as a factor of J; it must be above 0"),
+        (lambda ops: ops.scale_volume_ratio(np.full(N, np.inf)), "a factor of J that is not finite"),
+        (lambda ops: ops.weigh(-np.ones(N)), "gave -1 as a weight; it must be at least 0"),
+        (lambda ops: ops.weigh(1.0), "gave a float as a weight"),
+        (lambda ops: ops.nodes.at_particles(np.ones(3)), "gave an array of shape (3,) as a field"),
+        (lambda ops: ops.nodes.average(np.ones(N + 1)), "one number for each of 64 particles"),
+        (lambda ops: ops.places.least_around(None), "gave nothing as a field"),
+        (lambda ops: ops.places.nearest(ops, ops.nodes.crowding()), "what is no lattice of this scene"),
+        (lambda ops: ops.cells().at_particles("all"), "gave the text 'all' as a field"),
+    ],
+)
+def test_what_a_redistribution_cannot_hand_in(use, reason):
+    class Bad(Redistribution):
+        name = "of-the-tests"
+        api_version = 2
+        citation = "none"
+
+        def is_due(self, shear):
+            return True
+
+        def redistribute(self, ops, time):
+            use(ops)
+
+    assert reason in blamed("redistribution", Bad)
+
+
+@pytest.mark.parametrize(
+    ("due", "reason"), [(None, "returned nothing from is_due"), (0.5, "returned a float from is_due")]
+)
+def test_a_redistribution_that_does_not_say_whether_it_is_due(due, reason):
+    class Bad(Redistribution):
+        name = "of-the-tests"
+        api_version = 2
+        citation = "none"
+
+        def is_due(self, shear):
+            return due
+
+        def redistribute(self, ops, time):
+            pass
+
+    assert f"{reason}; it must be True or False" in blamed("redistribution", Bad)
 
 
 def test_a_flip_that_is_no_number():

@@ -14,6 +14,7 @@ from pydantic import Discriminator, Field, Tag
 
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
+from ..contracts.redistribution import Redistribution
 from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
@@ -132,6 +133,7 @@ class Scheme(Model):
     order: UpdateOrder
     velocity: VelocityUpdate
     volumetric: VolumetricTreatment
+    redistribution: Redistribution
     splitting: bool = Field(
         default=False, description="whether particles whose box is drawn longer than a cell are split in two"
     )

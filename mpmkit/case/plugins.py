@@ -8,11 +8,14 @@ from ..registry.audit import require_sentences
 from ..registry.blame import blaming_plugins
 from .model import Case
 
+SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution")
+"""Kinds of plug-ins that a scheme is made of."""
+
 
 def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
     """Kind and plug-in, for every plug-in that the case uses."""
     scheme = case.scheme
-    used = [(kind, getattr(scheme, kind)) for kind in ("shape", "order", "velocity", "volumetric")]
+    used = [(kind, getattr(scheme, kind)) for kind in SCHEME]
     for body in case.bodies:
         law = body.material.constitutive_law
         used.append(("law", law))

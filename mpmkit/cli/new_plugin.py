@@ -14,7 +14,9 @@ from .printing import echo
 @click.argument("name")
 @click.option(
     "--kind",
-    type=click.Choice(["law", "shape", "order", "velocity", "volumetric", "equation_of_state"]),
+    type=click.Choice(
+        ["law", "shape", "order", "velocity", "volumetric", "redistribution", "equation_of_state"]
+    ),
     required=True,
     help="What the plug-in is.",
 )

@@ -10,6 +10,7 @@ from .hooks import KINDS, hookimpl
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -20,14 +21,18 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "Cells",
     "ConstitutiveLaw",
     "ElastoviscoplasticLaw",
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
     "Kinematics",
+    "Lattice",
     "Operations",
     "Plugin",
+    "Redistributing",
+    "Redistribution",
     "ShapeFunction",
     "StateVariable",
     "UpdateOrder",

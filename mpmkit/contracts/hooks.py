@@ -13,6 +13,7 @@ import pluggy
 from .equation_of_state import EquationOfState
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
+from .redistribution import Redistribution
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -52,12 +53,18 @@ def mpmkit_equations_of_state() -> Iterable[type[EquationOfState]]:  # type: ign
     """Equations of state of this module."""
 
 
+@hookspec
+def mpmkit_redistributions() -> Iterable[type[Redistribution]]:  # type: ignore[empty-body]
+    """Redistributions of this module."""
+
+
 KINDS: dict[str, tuple[str, type]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
     "velocity": ("mpmkit_velocity_updates", VelocityUpdate),
     "law": ("mpmkit_laws", ConstitutiveLaw),
     "volumetric": ("mpmkit_volumetric_treatments", VolumetricTreatment),
+    "redistribution": ("mpmkit_redistributions", Redistribution),
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
 }
 """Kind of plug-in: its hook and its contract."""

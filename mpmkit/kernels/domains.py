@@ -31,6 +31,31 @@ def follow_strain(L, dt, box, least, half_size):
 
 
 @kernel()
+def hold_volume(L, volume, position, radial, box, half_size, follows, largest):
+    """l = V^(1/dim) / 2 along every axis, with the area V / (2 π r) for the volume in an axisymmetric scene.
+
+    A box of equal sides knows no direction that shear could have scrambled. The half-sizes that the shape
+    function sees are those of the box if it ``follows``. ``largest``, an entry a chunk, becomes the largest
+    shear rate γ̇, 1/s, of its particles.
+    """
+    n, dim = box.shape
+    for c in prange(chunk_count(n)):
+        most = 0.0
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
+            xx, yy, zz = L[p, 0, 0] - mean, L[p, 1, 1] - mean, L[p, 2, 2] - mean
+            yz, xz, xy = L[p, 1, 2] + L[p, 2, 1], L[p, 0, 2] + L[p, 2, 0], L[p, 0, 1] + L[p, 1, 0]
+            most = max(most, 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy)
+            size = volume[p] / (2 * math.pi * position[p, 0]) if radial else volume[p]
+            half = 0.5 * (math.sqrt(size) if dim == 2 else size ** (1 / 3))
+            for a in range(dim):
+                box[p, a] = half
+                if follows:
+                    half_size[p, a] = half
+        largest[c] = math.sqrt(most)
+
+
+@kernel()
 def volume_within_reach(volume, half_size, cell_size, within):
     """V Π min(1, Δx/(2 l_i)), ``(n,)``: what of each box is where its weights are, no longer than a cell."""
     n, dim = half_size.shape

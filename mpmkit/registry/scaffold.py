@@ -23,6 +23,7 @@ KINDS = {
     "order": "update order",
     "velocity": "velocity update",
     "volumetric": "volumetric treatment",
+    "redistribution": "redistribution",
     "equation_of_state": "equation of state",
 }
 """Kinds of plug-ins that there are templates for, and what they are called."""

@@ -193,7 +193,7 @@ def remedy(s: SceneView) -> str:
     exceeded = warnings(scheme, s.limits, s.time_step)
     if exceeded:
         return f"likely since {exceeded[0]}: take that limit out of it"
-    for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric):
+    for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric, scheme.redistribution):
         for caution in require_sentences(plugin, "cautions", plugin.cautions(s.case)):
             return f"likely since {caution}"
     step = f"reduce scheme.time_step.fraction, which is {scheme.time_step.fraction:g}"

@@ -14,10 +14,12 @@ from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
+from ..kernels.splines import SUPPORT
 from ..output import PARTICLE_VARIABLES
 from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .available_memory import tightest_limit
+from .redistribution import redistributes
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -26,6 +28,8 @@ PASSING = 4
 """Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
 """A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
+MIRRORED = 5
+"""Doubles of a node of a lattice of a redistribution: its sums, its crowding, and its room."""
 COPY = 1.125
 """Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
 MARGIN = 5
@@ -52,7 +56,8 @@ def expected_bytes(case: Case, particles: float) -> int:
     As the material spreads, so does the window of nodes that covers it; particles take most by far.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
-    return int(particles * (bytes_per_particle(case) + kept) + window_nodes(case) * DOUBLES_PER_NODE * DOUBLE)
+    of_particles = particles * (bytes_per_particle(case) + kept)
+    return int(of_particles + window_nodes(case) * _doubles_per_node(case) * DOUBLE)
 
 
 def checkpoint_bytes(case: Case, particles: float) -> int:
@@ -71,7 +76,25 @@ def bytes_per_particle(case: Case) -> int:
     dim, support = case.space_.dim, case.scheme.shape.support
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
-    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base)
+    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base + _redistributed(case))
+
+
+def _redistributed(case: Case) -> int:
+    """Bytes a particle that a redistribution holds for a moment: splines of two lattices, its shift."""
+    if not redistributes(case.scheme.redistribution):
+        return 0
+    dim = case.space_.dim
+    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * 2 * dim * SUPPORT, 2 * dim, 4
+    return INDEX * bases + DOUBLE * (splines + shift_and_slope + numbers)
+
+
+def _doubles_per_node(case: Case) -> float:
+    """Numbers that a node holds, with those of a finer lattice where there is a redistribution."""
+    if not redistributes(case.scheme.redistribution):
+        return DOUBLES_PER_NODE
+    dim = case.space_.dim
+    finest = max(max(body.particles_along_axes(dim)) for body in case.bodies)
+    return DOUBLES_PER_NODE + MIRRORED * (1 + finest**dim)
 
 
 def _state_doubles(case: Case) -> int:
@@ -81,12 +104,12 @@ def _state_doubles(case: Case) -> int:
     with blaming_plugins(plugins_of(case)):  # they say what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
-    number_mass_volumes_pressures_rate = 8
+    number_mass_volumes_pressures_rate_part = 9
     vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     return (
-        number_mass_volumes_pressures_rate
+        number_mass_volumes_pressures_rate_part
         + vectors
         + affine
         + gradient_and_stress
@@ -133,7 +156,7 @@ def require_memory(case: Case) -> None:
     needed = expected_bytes(case, particles) + checkpoint_bytes(case, particles)
     there, limit = tightest_limit()
     if needed > there:
-        if window_nodes(case) * DOUBLES_PER_NODE * DOUBLE > needed / 2:
+        if window_nodes(case) * _doubles_per_node(case) * DOUBLE > needed / 2:
             raise CaseError(_too_wide(case, needed, f"{_gib(there)} is left for this run {limit}"))
         fewer_rows = "fewer rows of output.particle_history, " if case.output.particle_history else ""
         raise CaseError(

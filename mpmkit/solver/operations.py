@@ -18,6 +18,7 @@ from ..registry import audit
 from .averager import Averager
 from .grid import Grid, Window
 from .particles import Group, Particles
+from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
@@ -45,6 +46,7 @@ class SceneOperations:
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
+        self.stage = Stage(scheme, grid, particles, radial)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
@@ -79,7 +81,12 @@ class SceneOperations:
     @property
     def components(self) -> dict[str, Stateful]:
         """What has a state of its own, in the order in which it is restored."""
-        return {"window": self.window, "sorting": self.sorting, "relaxation": self.relaxation}
+        return {
+            "window": self.window,
+            "sorting": self.sorting,
+            "relaxation": self.relaxation,
+            "stage": self.stage,
+        }
 
     def state(self) -> State:
         """Its numbers, its components, and the last weights, which the guard of the mass reads."""
@@ -97,6 +104,8 @@ class SceneOperations:
     def begin(self) -> int | None:
         """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
         lost = self._sort()
+        if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
+            lost = self._sort()
         if lost is None:
             self._rehearsing = self._begun % audit.INTERVAL == 0
             self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
@@ -165,11 +174,14 @@ class SceneOperations:
 
     def _map(self, momentum: bool, forces: bool) -> None:
         p, w = self.particles, self.window
+        volume = p.volume
         if forces:
             volumes.assign(p.mapped_pressure, self._treated(p.pressure))
+            if self.stage.acts:
+                volume = p.volume * p.quadrature
         self._scatter(
             w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.affine, p.volume, p.stress, p.mapped_pressure, self.gravity,
+            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure, self.gravity,
             self.cell_size, momentum, forces,
         )  # fmt: skip
 
@@ -284,13 +296,27 @@ class SceneOperations:
         return pressure
 
     def _follow_domains(self, dt: float) -> None:
+        p = self.particles
+        if not self.scheme.redistribution.equal_boxes:
+            self._follow_deformation(slice(0, len(p)), dt)
+        elif not self._all_fluid:
+            for group in p.groups:
+                if not group.law.uses_equation_of_state:
+                    self._follow_deformation(group.part, dt)
+        self.stage.follow(dt)
+
+    def _follow_deformation(self, part: slice, dt: float) -> None:
         p, rule = self.particles, self.scheme.shape.particle_domain
-        least = self._no_rows if p.least_half_size is None else p.least_half_size
-        domains.follow_strain(p.velocity_gradient, dt, p.box, least, p.half_size)
+        least = self._no_rows if p.least_half_size is None else p.least_half_size[part]
+        domains.follow_strain(p.velocity_gradient[part], dt, p.box[part], least, p.half_size[part])
         if rule == "stretch":
-            domains.follow_stretch(p.deformation_gradient, p.initial_half_size, p.half_size)
+            assert p.deformation_gradient is not None
+            assert p.initial_half_size is not None
+            F, initial = p.deformation_gradient[part], p.initial_half_size[part]
+            domains.follow_stretch(F, initial, p.half_size[part])
         elif rule == "volume":
-            domains.follow_volume(p.volume_ratio, p.initial_half_size, p.half_size)
+            assert p.initial_half_size is not None
+            domains.follow_volume(p.volume_ratio[part], p.initial_half_size[part], p.half_size[part])
 
     # --- Volumes
 
@@ -314,6 +340,8 @@ class SceneOperations:
         return treated
 
     def relax_volume(self, dt: float) -> None:
+        if self.scheme.redistribution.equal_boxes:
+            return
         author = self.scheme.volumetric
         asked = author.relaxation_rate(self._for_volumetric)
         rate = audit.require_number(author, "relaxation_rate", asked)

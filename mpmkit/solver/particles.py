@@ -97,6 +97,8 @@ class Particles:
     """(n,) of the equation of state at the particle's own volume ratio"""
     mapped_pressure: np.ndarray
     """(n,) what the volumetric treatment makes of it: the pressure that enters the internal force"""
+    quadrature: np.ndarray
+    """(n,) part of its volume with which a particle enters the internal force"""
     deformation_gradient: np.ndarray | None
     groups: list[Group] = field(default_factory=list)
 

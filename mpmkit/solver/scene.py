@@ -68,6 +68,7 @@ def make_particles(case: Case) -> Particles:
         stress=np.zeros((n, 6)),
         pressure=np.zeros(n),
         mapped_pressure=np.zeros(n),
+        quadrature=np.ones(n),
         deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
     )
     start = 0

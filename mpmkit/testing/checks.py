@@ -12,13 +12,24 @@ from ..contracts import (
     EquationOfState,
     Operations,
     Plugin,
+    Redistribution,
     ShapeFunction,
     UpdateOrder,
     VelocityUpdate,
     VolumetricTreatment,
 )
 from ..errors import GuardStop, PluginFault
-from . import elastic, equations_of_state, flight, law_promises, laws, radial, shapes, volumetric
+from . import (
+    elastic,
+    equations_of_state,
+    flight,
+    law_promises,
+    laws,
+    radial,
+    redistribution,
+    shapes,
+    volumetric,
+)
 from .descriptor import descriptor, registered
 from .law_subject import Curve, LawSubject
 from .scenes import SPACES
@@ -61,6 +72,13 @@ ON_SHAPES = (
 ON_ORDERS = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.energy)
 ON_VELOCITIES = (flight.uniform_motion, flight.free_fall, flight.momentum, flight.no_energy_from_nowhere)
 ON_TREATMENTS = (volumetric.constant_field, volumetric.power, volumetric.relaxation_rate)
+ON_REDISTRIBUTIONS = (
+    redistribution.even_particles,
+    redistribution.rest,
+    redistribution.mass_and_momentum,
+    redistribution.disorder_decays,
+    redistribution.repeatable,
+)
 ON_EQUATIONS_OF_STATE = (
     equations_of_state.arrays,
     equations_of_state.natural_state,
@@ -129,6 +147,12 @@ def velocity_checks(velocity: VelocityUpdate) -> list[Check]:
 def volumetric_checks(treatment: VolumetricTreatment) -> list[Check]:
     """What every volumetric treatment must be, in each space, with the default schemes."""
     return _of("volumetric", treatment, _in_each_space(ON_TREATMENTS, treatment))
+
+
+def redistribution_checks(author: Redistribution) -> list[Check]:
+    """What every redistribution must do, in each space, with the default schemes."""
+    due = ("is_due", partial(redistribution.is_due, author))
+    return _of("redistribution", author, [due, *_in_each_space(ON_REDISTRIBUTIONS, author)])
 
 
 def equation_of_state_checks(state: EquationOfState) -> list[Check]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from ..contracts import (
     ConstitutiveLaw,
     EquationOfState,
+    Redistribution,
     ShapeFunction,
     UpdateOrder,
     VelocityUpdate,
@@ -17,6 +18,7 @@ from .checks import (
     equation_of_state_checks,
     law_checks,
     order_checks,
+    redistribution_checks,
     shape_checks,
     velocity_checks,
     volumetric_checks,
@@ -94,6 +96,14 @@ def volumetric_tests(treatment: VolumetricTreatment) -> Test:
     A constant field stays, the power of the pressure is what the energy loses, the rate is a number.
     """
     return _tests(volumetric_checks(treatment))
+
+
+def redistribution_tests(author: Redistribution) -> Test:
+    """A test function, as that of ``law_tests``, for a redistribution.
+
+    Even particles stay, nothing happens without shear, mass and momentum are kept, disorder does not grow.
+    """
+    return _tests(redistribution_checks(author))
 
 
 def equation_of_state_tests(state: EquationOfState) -> Test:

@@ -7,6 +7,7 @@ import law_mutants
 import numpy as np
 import order_mutants
 import pytest
+import redistribution_mutants
 import shape_mutants
 import velocity_mutants
 import volumetric_mutants
@@ -19,6 +20,7 @@ from mpmkit.testing import (
     law_checks,
     law_tests,
     order_checks,
+    redistribution_checks,
     shape_checks,
     velocity_checks,
     volumetric_checks,
@@ -167,11 +169,12 @@ def test_a_mutant_of_an_order_fails(order, name):
     assert "\n" not in str(caught.value)
 
 
-# --- Velocity updates, volumetric treatments, equations of state --------------------------------------------
+# --- The other kinds ----------------------------------------------------------------------------------------
 
 CHECKS = {
     "velocity": velocity_checks,
     "volumetric": volumetric_checks,
+    "redistribution": redistribution_checks,
     "equation_of_state": equation_of_state_checks,
 }
 OTHER_MUTANTS = [
@@ -189,6 +192,17 @@ OTHER_MUTANTS = [
     ("volumetric", volumetric_mutants.WholeNumbers, "constant field plane-strain"),
     ("volumetric", volumetric_mutants.Nothing, "constant field plane-strain"),
     ("volumetric", volumetric_mutants.DrawsApart, "relaxation rate plane-strain"),
+    ("redistribution", redistribution_mutants.Attracts, "disorder decays plane-strain"),
+    ("redistribution", redistribution_mutants.Settles, "even particles axisymmetric"),
+    ("redistribution", redistribution_mutants.NeverRests, "rest plane-strain"),
+    ("redistribution", redistribution_mutants.AlwaysDue, "is due"),
+    ("redistribution", redistribution_mutants.Perhaps, "is due"),
+    ("redistribution", redistribution_mutants.Swells, "even particles 3d"),
+    ("redistribution", redistribution_mutants.Heavier, "even particles plane-strain"),
+    ("redistribution", redistribution_mutants.ByChance, "repeatable plane-strain"),
+    ("redistribution", redistribution_mutants.NoNumber, "disorder decays axisymmetric"),
+    ("redistribution", redistribution_mutants.OneTooFew, "mass and momentum plane-strain"),
+    ("redistribution", redistribution_mutants.WholeNumbers, "mass and momentum 3d"),
     ("equation_of_state", equation_of_state_mutants.WrongSign, "resists compression"),
     ("equation_of_state", equation_of_state_mutants.WrongSign, "energy gives the pressure"),
     ("equation_of_state", equation_of_state_mutants.TwiceAsStiff, "sound speed"),
@@ -206,6 +220,7 @@ OTHER_MUTANTS = [
     [
         ("velocity", velocity_mutants.Undamped),
         ("volumetric", volumetric_mutants.Half),
+        ("redistribution", redistribution_mutants.Spread),
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
     ],
 )

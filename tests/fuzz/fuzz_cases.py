@@ -11,6 +11,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from mpmkit.case import case_schema, parse_case
+from mpmkit.case.plugins import SCHEME
 from mpmkit.registry import installed
 from mpmkit.spaces import SPACES
 
@@ -120,9 +121,7 @@ def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
             bodies[-1]["particles_per_cell"] = draw(
                 st.sampled_from([1, 2 ** len(axes), [2] * len(axes), [1, 2, 3][: len(axes)]])
             )
-    scheme = {
-        k: draw(plugins(k)) for k in ("shape", "order", "velocity", "volumetric") if draw(st.booleans())
-    }
+    scheme = {k: draw(plugins(k)) for k in SCHEME if draw(st.booleans())}
     if draw(st.booleans()):
         scheme["splitting"] = draw(st.booleans())
     if draw(st.booleans()):

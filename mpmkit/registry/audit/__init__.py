@@ -18,11 +18,13 @@ from .fences import SAMPLE
 from .laws import rehearse_law, require_stress
 from .returned import (
     FEW,
+    described,
     require_array,
     require_energy,
     require_finite,
     require_number,
     require_sentences,
+    require_truth,
 )
 from .shapes import particle_domain, rehearse_shape, require_bounds, require_weights
 from .treatments import Rehearsed
@@ -39,6 +41,7 @@ __all__ = [
     "SAMPLE",
     "Account",
     "Rehearsed",
+    "described",
     "is_finite",
     "particle_domain",
     "rehearse_equation_of_state",
@@ -51,5 +54,6 @@ __all__ = [
     "require_number",
     "require_sentences",
     "require_stress",
+    "require_truth",
     "require_weights",
 ]

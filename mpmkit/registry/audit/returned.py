@@ -36,6 +36,17 @@ def require_number(plugin: Plugin, what: str, value: Any) -> float:
     return float(value.item() if single else value)
 
 
+def require_truth(plugin: Plugin, what: str, value: Any) -> bool:
+    """The yes or no that a plug-in returned from ``what``.
+
+    Raises:
+        PluginFault: it is neither ``True`` nor ``False``.
+    """
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise PluginFault(plugin, f"returned {described(value)} from {what}; it must be True or False")
+
+
 def require_sentences(plugin: Plugin, what: str, value: Any) -> list[str]:
     """The sentences that a plug-in returned from ``what``.
 

@@ -43,6 +43,8 @@ class NodalAverage(VolumetricTreatment):
     def cautions(self, case) -> list[str]:
         if case.scheme.splitting and self.relaxation >= HOLDS_RELAXATION:
             return []
+        if case.scheme.redistribution.equal_boxes:  # which holds the volume in another way
+            return []
         free_fall = math.sqrt(case.height / (math.hypot(*case.gravity_vector) or math.inf))
         thin = any(_is_thin(body.material.constitutive_law) for body in case.bodies)
         if not thin or not free_fall or case.until < LONG * free_fall:
@@ -50,7 +52,7 @@ class NodalAverage(VolumetricTreatment):
         return [
             "volumetric 'nodal-average' loses volume in a fluid of little viscosity and yield stress that "
             f"swings for longer than {LONG * free_fall:.2g} s, unless scheme.splitting is true and its "
-            f"relaxation at least {HOLDS_RELAXATION:g}"
+            f"relaxation at least {HOLDS_RELAXATION:g}, or scheme.redistribution is 'even'"
         ]
 
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:

@@ -1,0 +1,91 @@
+"""Contract of a redistribution: what keeps volume, box and place of the particles the same thing."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from .base import Plugin
+
+
+class Lattice(Protocol):
+    """Nodes at equal distances over the material, each with its quadratic B-spline, mirrored at walls.
+
+    Arrays of nodes have the shape ``(nodes,)``, arrays of particles ``(n,)`` or ``(n, dim)``.
+    """
+
+    spacing: float
+    """m"""
+
+    def crowding(self) -> np.ndarray:
+        """κ_n = Σ size_p N_np / room_n: one where the material is as it should be, less at its surface."""
+
+    def average(self, values: np.ndarray) -> np.ndarray:
+        """Σ size_p N_np f_p / Σ size_p N_np of a particle field; zero where nothing is."""
+
+    def at_particles(self, nodal: np.ndarray) -> np.ndarray:
+        """Σ N_np f_n, ``(n,)``."""
+
+    def slope_at_particles(self, nodal: np.ndarray) -> np.ndarray:
+        """Σ ∇N_np f_n, ``(n, dim)``, 1/m."""
+
+    def least_around(self, nodal: np.ndarray) -> np.ndarray:
+        """The least of a node and all its neighbours, corners included; nodes that are not stored count 0."""
+
+    def nearest(self, other: Lattice, nodal: np.ndarray) -> np.ndarray:
+        """Values of the nodes of another lattice at the nodes of this one, each from the nearest."""
+
+
+class Cells(Protocol):
+    """The cells of the grid, and the part of each particle's box in them."""
+
+    def filling(self) -> np.ndarray:
+        """Q_c = Σ size_p part_pc / size of the cell, ``(cells,)``."""
+
+    def least_beside(self, filling: np.ndarray) -> np.ndarray:
+        """The least of a cell and those that share a face with it."""
+
+    def at_particles(self, values: np.ndarray) -> np.ndarray:
+        """Σ part_pc f_c, ``(n,)``."""
+
+
+class Redistributing(Protocol):
+    """What a redistribution works on. Sizes are areas V / (2 π r) in axisymmetric scenes, else volumes."""
+
+    nodes: Lattice
+    """The nodes of the grid."""
+    places: Lattice
+    """A lattice as fine as the particles are apart."""
+
+    def cells(self) -> Cells:
+        """The cells of the grid, with the boxes as they are now."""
+
+    def shear_rate(self) -> np.ndarray:
+        """γ̇ = √(2 D':D') of each particle, 1/s, ``(n,)``."""
+
+    def scale_volume_ratio(self, factor: np.ndarray) -> None:
+        """J ← J factor, for fluids."""
+
+    def shift(self, displacement: np.ndarray) -> None:
+        """x ← x + δx, for fluids, no further than walls; v follows by its affine part, momentum is kept."""
+
+    def weigh(self, factor: np.ndarray) -> None:
+        """Parts of their volumes with which particles enter the internal force from now on."""
+
+
+class Redistribution(Plugin):
+    """How volume, box and place of the particles are kept the same as material is sheared for long."""
+
+    equal_boxes: ClassVar[bool] = False
+    """Whether boxes have equal sides and hold the volume. Otherwise they follow the normal strain, and J is
+    drawn to its average as the volumetric treatment asks."""
+
+    def is_due(self, shear: float) -> bool:
+        """Whether it is time, by the largest ∫ γ̇ dt, 1, since the last time."""
+        return False
+
+    @abstractmethod
+    def redistribute(self, ops: Redistributing, time: float) -> None:
+        """Carry out what is due for the ``time``, s, since the last time."""

@@ -1,0 +1,84 @@
+"""Quadratic B-splines on a lattice, the parts of boxes in its cells, and slopes of what is on its nodes."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from numba import prange
+
+from .compile import CHUNK, chunk_count, kernel
+
+SUPPORT, PARTS = 3, 2
+"""Nodes along an axis that a spline touches, and cells that a box no wider than a cell lies in."""
+
+
+@kernel()
+def fill_splines(x, inverse, base, weight, gradient):
+    """Weights ``(n, dim, 3)`` and slopes, 1/m, of the quadratic B-spline: a hat averaged over one spacing.
+
+    ``inverse`` is one over the spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
+    """
+    n, dim = x.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            for a in range(dim):
+                first = math.floor(x[p, a] * inverse - 0.5)
+                d = x[p, a] * inverse - first - 1  # from the middle node, -1/2 to 1/2
+                base[p, a] = first
+                weight[p, a, 0] = 0.5 * (0.5 - d) ** 2
+                weight[p, a, 1] = 0.75 - d * d
+                weight[p, a, 2] = 0.5 * (0.5 + d) ** 2
+                gradient[p, a, 0] = (d - 0.5) * inverse
+                gradient[p, a, 1] = -2 * d * inverse
+                gradient[p, a, 2] = (d + 0.5) * inverse
+
+
+@kernel()
+def fill_parts(x, half_size, inverse, base, part):
+    """Part ``(n, dim, 2)`` of each box in cell ``base`` and in the next; a box is at most one cell wide."""
+    n, dim = x.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            for a in range(dim):
+                half = min(half_size[p, a] * inverse, 0.5)
+                begin = x[p, a] * inverse - half
+                first = math.floor(begin)
+                beyond = max(0.0, begin + 2 * half - first - 1) / (2 * half)
+                base[p, a] = first
+                part[p, a, 0] = 1 - beyond
+                part[p, a, 1] = beyond
+
+
+@cache
+def gather_slope(dim: int):
+    """The kernel that takes Σ ∇N value of a nodal field to the particles, into ``slope (n, dim)``, 1/m."""
+
+    @kernel()
+    def gather_slope(field, strides, lower, base, weight, gradient, slope):
+        n, planes = len(base), SUPPORT if dim == 3 else 1
+        for chunk in prange(chunk_count(n)):
+            for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+                first = 0
+                for d in range(dim):
+                    first += (base[p, d] - lower[d]) * strides[d]
+                sx = sy = sz = 0.0
+                for a in range(SUPPORT):
+                    for b in range(planes):
+                        row = first + a * strides[0] + b * strides[1]
+                        along = across = 0.0
+                        for c in range(SUPPORT):
+                            along += weight[p, dim - 1, c] * field[row + c]
+                            across += gradient[p, dim - 1, c] * field[row + c]
+                        if dim == 3:
+                            sx += gradient[p, 0, a] * weight[p, 1, b] * along
+                            sy += weight[p, 0, a] * gradient[p, 1, b] * along
+                            sz += weight[p, 0, a] * weight[p, 1, b] * across
+                        else:
+                            sx += gradient[p, 0, a] * along
+                            sy += weight[p, 0, a] * across
+                slope[p, 0], slope[p, 1] = sx, sy
+                if dim == 3:
+                    slope[p, 2] = sz
+
+    return gather_slope

@@ -1,0 +1,63 @@
+"""The cells of the grid over the material, and what of each particle's box lies in them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...kernels.gather import gather_scalar
+from ...kernels.scatter import PAIR, scatter_pairs
+from ...kernels.splines import PARTS, fill_parts
+from .mirrored import Mirrored, require_field
+
+
+class BoxCells:
+    """The contract ``Cells`` made real; what reaches over a wall counts to the cell in front of it.
+
+    Args:
+        block: the cells.
+        tasks: of the sorted particles, for sums in parallel.
+        position, half_size: ``(n, dim)``, m, of the boxes.
+        size: ``(n,)``, area or volume of each particle.
+    """
+
+    def __init__(
+        self,
+        block: Mirrored,
+        tasks: np.ndarray,
+        position: np.ndarray,
+        half_size: np.ndarray,
+        size: np.ndarray,
+    ) -> None:
+        n, self._dim = position.shape
+        self.block = block
+        self._tasks, self._size = tasks, size
+        self._base = np.empty((n, self._dim), dtype=np.int32)
+        self._part = np.empty((n, self._dim, PARTS))
+        fill_parts(position, half_size, 1 / block.spacing, self._base, self._part)
+
+    def filling(self) -> np.ndarray:
+        block, pairs = self.block, self.block.empty(PAIR)
+        scatter_pairs(self._dim, PARTS)(
+            pairs, block.strides, block.lower, self._tasks, self._base, self._part, self._size, self._size
+        )
+        filling = pairs[:, 0] / block.room()
+        block.fold(filling)
+        block.fill(filling)
+        return filling
+
+    def least_beside(self, filling: np.ndarray) -> np.ndarray:
+        require_field(filling, self.block.count, "cells")
+        block = filling.reshape(self.block.shape)
+        least = block.copy()
+        for axis in range(self._dim):
+            along, lowest = np.moveaxis(block, axis, 0), np.moveaxis(least, axis, 0)
+            lowest[:-1] = np.minimum(lowest[:-1], along[1:])
+            lowest[1:] = np.minimum(lowest[1:], along[:-1])
+        least = least.ravel()
+        self.block.fill(least)
+        return least
+
+    def at_particles(self, values: np.ndarray) -> np.ndarray:
+        block, field, out = self.block, self.block.field(values), np.empty(len(self._base))
+        gather_scalar(self._dim, PARTS)(field, block.strides, block.lower, self._base, self._part, out)
+        return out

@@ -1,0 +1,110 @@
+"""A block of nodes or cells over the material, folded and filled at the faces of the domain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ...errors import PluginFault
+from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.vectors import LANES
+from ...registry import audit
+from ..grid import Grid, Window
+
+PADDING = 2
+"""Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
+
+
+def require_field(values: Any, count: int, of: str) -> None:
+    """Raise PluginFault, of the plug-in that called, unless values are ``(count,)`` real numbers."""
+    if not isinstance(values, np.ndarray) or values.shape != (count,) or values.dtype.kind not in "fiub":
+        raise PluginFault(
+            None,
+            f"gave {audit.described(values)} as a field; it must have one number for each of {count} {of}",
+        )
+
+
+class Mirrored:
+    """The block that a window covers, ``times`` as fine as the grid.
+
+    Args:
+        grid: its faces say what lies behind them: the image at a wall, the other end of a period.
+        window: the nodes that particles can touch.
+        times: nodes of the block a cell.
+        centred: whether it holds the cells and not the nodes between them.
+    """
+
+    def __init__(self, grid: Grid, window: Window, times: int, centred: bool) -> None:
+        self.grid = grid
+        self.spacing = grid.cell_size / times
+        self.lower = window.lower * times
+        size = np.array(window.shape[: grid.dim])
+        size[-1] -= PADDING
+        size = (size - 1) * times + (0 if centred else 1)
+        size[-1] += PADDING
+        self.shape = tuple(int(n) for n in size)
+        self.strides = (
+            (self.shape[1] * self.shape[2], self.shape[2], 1) if grid.dim == 3 else (self.shape[1], 1, 1)
+        )
+        self.count = int(np.prod(size))
+        self._ends = [
+            (int(-low), int(n * times - low)) for low, n in zip(self.lower, grid.cells, strict=True)
+        ]
+        self._centred = centred
+
+    def empty(self, width: int = 1) -> np.ndarray:
+        """Zeros, ``(count, width)``, with room behind them for a row of pairs."""
+        return np.zeros(self.count * width + LANES)[: self.count * width].reshape(self.count, width)
+
+    def field(self, values: np.ndarray) -> np.ndarray:
+        """Values of the nodes with room behind them, ``(count, 1)``, for the kernels that gather."""
+        require_field(values, self.count, "nodes or cells of the lattice")
+        field = self.empty()
+        field[:, 0] = values
+        return field
+
+    def fold(self, values: np.ndarray) -> None:
+        """Add what lies behind the faces to its images, in place; it is zero afterwards."""
+        for along, ghost, image in self._ghosts(values):
+            along[image] += along[ghost]
+            along[ghost] = 0.0
+
+    def fill(self, values: np.ndarray) -> None:
+        """Copy the images to what lies behind the faces, in place."""
+        for along, ghost, image in reversed(list(self._ghosts(values))):
+            along[ghost] = along[image]
+
+    def room(self) -> np.ndarray:
+        """Size of what belongs to each node or cell, m² or m³, ``(count,)``: half of it at a wall."""
+        room = np.full(self.shape, self.spacing**self.grid.dim)
+        if not self._centred:
+            for axis, (first, last) in enumerate(self._ends):
+                along = np.moveaxis(room, axis, 0)
+                for side, wall in enumerate((first, last)):
+                    if self.grid.faces[axis, side] not in (OPEN, PERIODIC) and 0 <= wall < len(along):
+                        along[wall] /= 2
+        return room.ravel()
+
+    def _ghosts(self, values: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:
+        """Planes behind the faces, each with that of its images: views with the axis first."""
+        block = values.reshape(self.shape)
+        for axis, (first, last) in enumerate(self._ends):
+            along = np.moveaxis(block, axis, 0)
+            for ghost, image in self._planes(axis, first, last):
+                if 0 <= ghost < len(along) and 0 <= image < len(along):
+                    yield along, ghost, image
+
+    def _planes(self, axis: int, first: int, last: int) -> Iterator[tuple[int, int]]:
+        """Planes of ghosts of an axis and of their images; ``first`` and ``last`` are at its ends."""
+        low, high = self.grid.faces[axis]
+        if low == PERIODIC:
+            ghosts = (first - 1, last) if self._centred else (first - 1, last, last + 1)
+            yield from ((ghost, first + (ghost - first) % (last - first)) for ghost in ghosts)
+            return
+        beside = 0 if self._centred else 1  # the cell at a wall is its own neighbour, a node has one
+        if low != OPEN:
+            yield first - 1, first + beside
+        if high != OPEN:
+            yield last + beside, last - 1

@@ -1,0 +1,174 @@
+"""The particles of a scene as a redistribution works on them, and when it does."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...case.model import Scheme
+from ...contracts import redistribution as contract
+from ...errors import PluginFault
+from ...kernels import domains
+from ...kernels.compile import chunk_count
+from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.tensors import shear_rate
+from ...registry import audit
+from ..grid import Grid, Window
+from ..particles import Particles
+from ..sorting import Sorting
+from ..stateful import State
+from .cells import BoxCells
+from .lattice import SplineLattice
+from .mirrored import Mirrored
+
+AT_A_WALL = 1e-6
+"""Distance, in cells, that a shift keeps from a wall."""
+
+
+def redistributes(author: contract.Redistribution) -> bool:
+    """Whether a redistribution can ever be due: one whose ``is_due`` is that of the contract never is."""
+    return type(author).is_due is not contract.Redistribution.is_due
+
+
+class Stage:
+    """The contract ``Redistributing`` made real, for the fluids of one scene.
+
+    Solids keep their boxes and places; they take room like everything else. What the redistribution hands in
+    is checked here: PluginFault if it has the wrong shape, or is not finite.
+
+    Attributes:
+        acts: whether the redistribution can ever be due; otherwise nothing is added up for it.
+        shear: largest ∫ γ̇ dt since the last redistribution, 1.
+        time: s, since then.
+    """
+
+    nodes: contract.Lattice
+    places: contract.Lattice
+
+    def __init__(self, scheme: Scheme, grid: Grid, particles: Particles, radial: bool) -> None:
+        self.redistribution = scheme.redistribution
+        self.acts = redistributes(scheme.redistribution)
+        self.shear = self.time = 0.0
+        self._follows = scheme.shape.particle_domain != "fixed"
+        self._grid, self._particles, self._radial = grid, particles, radial
+        self._times = max(1, round(grid.cell_size / self._typical_spacing()))
+
+    def state(self) -> State:
+        return {"shear": np.array(self.shear), "time": np.array(self.time)}
+
+    def restore(self, state: State) -> None:
+        self.shear, self.time = float(state["shear"]), float(state["time"])
+
+    def _typical_spacing(self) -> float:
+        """m, from particle to particle: that of most of them."""
+        return float(np.median(self._sizes())) ** (1 / self._grid.dim)
+
+    def _sizes(self) -> np.ndarray:
+        """Volumes; in axisymmetric scenes areas, so that nothing is special at the axis; ``(n,)``."""
+        p = self._particles
+        return p.volume / (2 * np.pi * p.position[:, 0]) if self._radial else p.volume
+
+    # --- Every step
+
+    def follow(self, dt: float) -> None:
+        """Boxes of fluids hold their volume if they are to have equal sides; shear is added up."""
+        most = 0.0
+        if self.redistribution.equal_boxes:
+            most = max(map(self._hold_volume, self._fluids()), default=0.0)
+        elif self.acts:
+            rates = (shear_rate(self._particles.velocity_gradient[part]) for part in self._fluids())
+            most = max((float(rate.max()) for rate in rates), default=0.0)
+        if self.acts:
+            self.shear += dt * most
+            self.time += dt
+
+    def _hold_volume(self, part: slice) -> float:
+        """Boxes of a fluid hold its volume; returns its largest shear rate, 1/s."""
+        p = self._particles
+        largest = np.empty(chunk_count(part.stop - part.start))
+        domains.hold_volume(
+            p.velocity_gradient[part], p.volume[part], p.position[part], self._radial,
+            p.box[part], p.half_size[part], self._follows, largest,
+        )  # fmt: skip
+        return float(largest.max(initial=0.0))
+
+    def redistribute_if_due(self, window: Window, sorting: Sorting) -> bool:
+        """Redistribute if so much shear has come together; whether it did. Particles must be sorted."""
+        author = self.redistribution
+        if not self.acts or not audit.require_truth(author, "is_due", author.is_due(self.shear)):
+            return False
+        position, size = self._particles.position, np.ascontiguousarray(self._sizes())
+        self._window, self._tasks = window, sorting.tasks
+        self._splines = self.nodes = self._lattice(1, position, size)
+        self.places = self._lattice(self._times, position, size)
+        author.redistribute(self, self.time)
+        del self.nodes, self.places, self._splines, self._window, self._tasks
+        self.shear = self.time = 0.0
+        return True
+
+    def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
+        return SplineLattice(Mirrored(self._grid, self._window, times, False), self._tasks, position, size)
+
+    # --- For the redistribution
+
+    def shear_rate(self) -> np.ndarray:
+        return shear_rate(self._particles.velocity_gradient)
+
+    def cells(self) -> contract.Cells:
+        p, block = self._particles, Mirrored(self._grid, self._window, 1, True)
+        return BoxCells(block, self._tasks, p.position, p.box, np.ascontiguousarray(self._sizes()))
+
+    def scale_volume_ratio(self, factor: np.ndarray) -> None:
+        p = self._particles
+        self._require(factor, "a factor of J", (len(p),))
+        if factor.min() <= 0:
+            raise PluginFault(
+                self.redistribution, f"gave {factor.min():.4g} as a factor of J; it must be above 0"
+            )
+        for part in self._fluids():
+            p.volume_ratio[part] *= factor[part]
+            p.volume[part] = p.initial_volume[part] * p.volume_ratio[part]
+
+    def shift(self, displacement: np.ndarray) -> None:
+        p, before = self._particles, self._particles.position.copy()
+        self._require(displacement, "a displacement", before.shape)
+        low, high = self._kept_from_walls()
+        for part in self._fluids():
+            moved = displacement[part].any(axis=1)  # others stay where they are, to the bit
+            shifted = np.clip(p.position[part] + displacement[part], low, high)
+            p.position[part][moved] = shifted[moved]
+        if p.affine.shape[1]:
+            change = np.einsum("pij,pj->pi", p.affine, p.position - before)
+            for axis in range(p.dim):
+                along = np.ascontiguousarray(change[:, axis])
+                # What a node gains is taken from all around it, so that no momentum is made.
+                taken = self._splines.at_particles(self._splines.average(along, p.mass))
+                p.velocity[:, axis] += along - taken
+
+    def _kept_from_walls(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest places, m, along each axis; infinite where there is no wall."""
+        grid, margin = self._grid, AT_A_WALL * self._grid.cell_size
+        walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
+        return np.where(walls[:, 0], margin, -np.inf), np.where(walls[:, 1], grid.extent - margin, np.inf)
+
+    def weigh(self, factor: np.ndarray) -> None:
+        self._require(factor, "a weight", (len(self._particles),))
+        if factor.min() < 0:
+            raise PluginFault(
+                self.redistribution, f"gave {factor.min():.4g} as a weight; it must be at least 0"
+            )
+        for part in self._fluids():
+            self._particles.quadrature[part] = factor[part]
+
+    def _require(self, given: np.ndarray, what: str, shape: tuple[int, ...]) -> None:
+        """Raise PluginFault unless what the redistribution gave are finite numbers in this shape."""
+        p, author = self._particles, self.redistribution
+        whole = isinstance(given, np.ndarray) and given.dtype.kind != "f"
+        found = audit.described(given) + (f" of {given.dtype}" if whole else "")
+        if not isinstance(given, np.ndarray) or given.shape != shape or given.dtype.kind != "f":
+            raise PluginFault(
+                author, f"gave {found} as {what}; it must be an array of shape {shape} of float64"
+            )
+        audit.require_finite(author, what, given, p.number, [p.position, p.volume, p.velocity_gradient])
+
+    def _fluids(self) -> list[slice]:
+        return [group.part for group in self._particles.groups if group.law.uses_equation_of_state]

@@ -1,0 +1,112 @@
+"""Volume, box and place of sheared particles made to say the same."""
+
+import numpy as np
+
+from mpmkit.contracts import Redistributing, Redistribution, hookimpl
+
+DUE = 0.02
+"""Shear ∫ γ̇ dt between two corrections."""
+FULL = 0.75
+"""Crowding from which a node is full; it is inside if all around it are full as well."""
+CROWDED = 1.05
+"""Crowding that still counts as none where a node is not inside."""
+MOST = 0.1
+"""Departure of ln κ that counts at most: what lies over each other is not thrown apart."""
+RATE = 2.0
+"""Shift over γ̇ dt h² ∇κ."""
+STEEP, LOOSE = 0.25, 0.8
+"""Change of the crowding over a cell above which, and crowding below which, a particle is at the surface."""
+LONGEST = 0.2
+"""Longest shift, over the spacing of the particles."""
+EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
+"""Filling below which a cell is at the surface, and bounds of the filling that is divided by."""
+
+
+class Even(Redistribution):
+    """Boxes of equal sides; J drawn to the room there is; places kept even; every cell weighs what it holds.
+
+    All rates go with the shear rate γ̇, so that nothing happens at rest, in rigid motion, or by making steps
+    shorter. With the crowding κ of the grid's nodes and κ_f of a lattice as fine as the particles' spacing h:
+
+        d ln J/dt = -γ̇ ln κ inside, and -γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
+        dx/dt = -2 γ̇ h² ∇κ_f, what is missing counting inside only, with no part out of the surface,
+        V of the internal force ← V Σ_c part_pc / Q_c, with the filling Q_c of full cells.
+    """
+
+    name = "even"
+    api_version = 2
+    citation = (
+        "shift after Lind, Xu, Stansby & Rogers, J. Comput. Phys. 231 (2012) 1499-1523; quadrature errors: "
+        "Baumgarten & Kamrin, Int. J. Numer. Meth. Eng. 124 (2023), doi:10.1002/nme.7217"
+    )
+    equal_boxes = True
+
+    def cautions(self, case) -> list[str]:
+        said = []
+        if case.scheme.splitting:
+            said.append(
+                "scheme.splitting is true, but redistribution 'even' does not need it: boxes of fluids keep "
+                "equal sides, and are hardly ever longer than a cell"
+            )
+        if case.scheme.shape.particle_domain == "stretch":
+            said.append(
+                "redistribution 'even' gives boxes of fluids equal sides; the domain 'stretch' of "
+                f"scheme.shape '{case.scheme.shape.name}' acts on solids only"
+            )
+        return said
+
+    def is_due(self, shear: float) -> bool:
+        return shear >= DUE
+
+    def redistribute(self, ops: Redistributing, time: float) -> None:
+        crowding = ops.nodes.crowding()
+        inside = ops.nodes.least_around(crowding) >= FULL
+        rate = ops.nodes.average(ops.shear_rate())
+        shift = _shift(ops, crowding, inside, rate, time)
+        ops.scale_volume_ratio(np.exp(-time * ops.nodes.at_particles(rate * _excess(crowding, inside))))
+        ops.shift(shift)
+        ops.weigh(_weights(ops))
+
+
+def _excess(crowding: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """ln κ at nodes inside, and of others what is above ``CROWDED``."""
+    some = np.log(np.maximum(crowding, 0.5))
+    beyond = np.maximum(some - np.log(CROWDED), 0.0)
+    return np.clip(np.where(inside, some, beyond), -MOST, MOST)
+
+
+def _shift(
+    ops: Redistributing, crowding: np.ndarray, inside: np.ndarray, rate: np.ndarray, time: float
+) -> np.ndarray:
+    """-2 γ̇ dt h² ∇(κ_f - 1), ``(n, dim)``, m."""
+    fine, h = ops.places, ops.places.spacing
+    departure = np.clip(fine.crowding() - 1, -1.0, 1.0)
+    departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
+    shift = fine.slope_at_particles(departure)
+    shift *= (-RATE * time * h * h * ops.nodes.at_particles(rate))[:, None]
+    shift = _kept_in(ops, crowding, shift)
+    longest = np.abs(shift).max(axis=1, keepdims=True)
+    return shift * np.minimum(1.0, LONGEST * h / np.maximum(longest, 1e-300))
+
+
+def _kept_in(ops: Redistributing, crowding: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    """The shift without its part down the crowding, for particles near the surface."""
+    slope = ops.nodes.spacing * ops.nodes.slope_at_particles(crowding)
+    steepness = np.einsum("pi,pi->p", slope, slope)
+    near = (steepness > STEEP**2) | (ops.nodes.at_particles(crowding) < LOOSE)
+    outwards = np.einsum("pi,pi->p", shift, slope)
+    taken = np.where(near & (outwards < 0), outwards / np.maximum(steepness, 1e-300), 0.0)
+    return shift - taken[:, None] * slope
+
+
+def _weights(ops: Redistributing) -> np.ndarray:
+    """Σ_c part_pc / Q_c, with Q_c = 1 at the surface."""
+    cells = ops.cells()
+    filling = cells.filling()
+    full = cells.least_beside(filling) > EMPTY
+    return cells.at_particles(1 / np.clip(np.where(full, filling, 1.0), LEAST, LARGEST))
+
+
+@hookimpl
+def mpmkit_redistributions():
+    return [Even]

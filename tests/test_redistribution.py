@@ -1,0 +1,325 @@
+"""What keeps volume, box and place of sheared particles the same, piece by piece."""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+import pytest
+
+from mpmkit.case import parse_case
+from mpmkit.case.plugins import cautions
+from mpmkit.contracts import Redistribution
+from mpmkit.solver.simulation import Simulation
+
+DX, CELLS = 0.1, 6
+FLUID = {
+    "law": "bingham-evp",
+    "density": 1000,
+    "yield_stress": 5,
+    "plastic_viscosity": 5,
+    "sound_speed": 20.0,
+}
+RUBBER = {"law": "neo-hookean", "density": 1000, "youngs_modulus": 1e5, "poisson_ratio": 0.3}
+AXES = {"plane-strain": "xz", "3d": "xyz", "axisymmetric": "rz"}
+WALLED = {
+    space: {f"{a}_{side}": "slip" for a in axes for side in ("min", "max")} for space, axes in AXES.items()
+}
+WALLED["axisymmetric"].pop("r_min")
+SEAMED = {
+    "plane-strain": {"x_min": "periodic", "x_max": "periodic", "z_min": "stick", "z_max": "symmetry"},
+    "3d": {f"{a}_{side}": "periodic" for a in "xy" for side in ("min", "max")}
+    | {"z_min": "slip", "z_max": "stick"},
+    "axisymmetric": {"z_min": "periodic", "z_max": "periodic", "r_max": "stick"},
+}
+spaces = pytest.mark.parametrize("space", AXES)
+each_side = pytest.mark.parametrize("faces", [WALLED, SEAMED], ids=["walls", "seams"])
+
+
+def filled(space, faces=WALLED, velocity=None, materials=(FLUID,), redistribution="even", **scheme):
+    """A domain that is full from wall to wall, of one material or of layers."""
+    axes = AXES[space]
+    side = CELLS * DX
+    layers = np.linspace(0, side, len(materials) + 1)
+    flat = len(axes) - 1
+    bodies = [
+        {
+            "shape": {"kind": "box", "lower": [0.0] * flat + [low], "upper": [side] * flat + [high]},
+            "material": material,
+            **({} if velocity is None else {"velocity": velocity}),
+        }
+        for low, high, material in zip(layers[:-1], layers[1:], materials, strict=True)
+    ]
+    return Simulation(
+        parse_case(
+            {
+                "space": space,
+                "until": 1.0,
+                "gravity": [0.0] * len(axes),
+                "grid": {"cell_size": DX, "domain": {a: [0, side] for a in axes}, "faces": faces[space]},
+                "bodies": bodies,
+                "scheme": {"redistribution": redistribution, **scheme},
+            }
+        )
+    )
+
+
+def disorder(simulation, amount=0.2, seed=3):
+    """Every particle moved by up to a part of its own size; sorted anew."""
+    p, rng = simulation.particles, np.random.default_rng(seed)
+    p.position += rng.uniform(-amount, amount, p.position.shape) * 2 * p.box
+    np.clip(p.position, 1e-6, CELLS * DX - 1e-6, out=p.position)
+    simulation.operations.sorting.sorts = 0
+    simulation.operations.begin()
+    return p
+
+
+def redistribute(simulation, probe):
+    """Call ``probe`` with the stage where a redistribution would be called, in this step."""
+    operations = simulation.operations
+    stage = operations.stage
+
+    class Probe:
+        equal_boxes = True
+
+        def is_due(self, shear):
+            return True
+
+        def redistribute(self, ops, time):
+            probe(ops)
+
+    stage.redistribution = Probe()
+    stage.redistribute_if_due(operations.window, operations.sorting)
+
+
+@spaces
+@each_side
+def test_a_domain_that_is_full_is_neither_crowded_nor_empty_anywhere(space, faces):
+    simulation = filled(space, faces)
+    simulation.operations.begin()
+    found = {}
+
+    def probe(ops):
+        for name in ("nodes", "places"):
+            lattice = getattr(ops, name)
+            crowding = lattice.crowding()
+            inside = crowding > 0
+            found[name] = crowding[inside]
+            np.testing.assert_allclose(lattice.at_particles(crowding), 1.0, rtol=1e-12)
+            np.testing.assert_allclose(lattice.slope_at_particles(crowding) * DX, 0.0, atol=1e-10)
+        cells = ops.cells()
+        np.testing.assert_allclose(cells.at_particles(cells.filling()), 1.0, rtol=1e-12)
+
+    redistribute(simulation, probe)
+    for crowding in found.values():
+        np.testing.assert_allclose(crowding, 1.0, rtol=1e-12)
+
+
+@spaces
+def test_even_particles_stay_where_they_are(space):
+    simulation = filled(space, SEAMED)
+    p = simulation.particles
+    simulation.operations.begin()
+    p.velocity_gradient[:, 0, 1] = 3.0
+    before = {name: array.copy() for name, array in p.arrays().items()}
+    simulation.operations.stage.shear, simulation.operations.stage.time = 1.0, 0.3
+    simulation.operations.stage.redistribute_if_due(
+        simulation.operations.window, simulation.operations.sorting
+    )
+    np.testing.assert_allclose(p.position, before["position"], atol=1e-12)
+    np.testing.assert_allclose(p.volume_ratio, 1.0, rtol=1e-12)
+    np.testing.assert_allclose(p.quadrature, 1.0, rtol=1e-12)
+
+
+@spaces
+def test_nothing_happens_at_rest_and_as_a_body_moves_as_a_whole(space):
+    """No shear, no redistribution: the same bits as if there were none."""
+    velocity = [0.0] * (len(AXES[space]) - 1) + [0.3]
+    open_faces = {name: {} for name in AXES}
+    one, other = (filled(space, open_faces, velocity, redistribution=kind) for kind in ("even", "none"))
+    for _ in range(10):
+        one.advance(), other.advance()
+    assert one.operations.stage.shear < 1e-9
+    np.testing.assert_allclose(one.particles.position, other.particles.position, rtol=1e-12)
+
+
+@spaces
+@each_side
+def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
+    simulation = filled(space, faces)
+    p = disorder(simulation)
+    p.velocity[:] = np.random.default_rng(1).normal(size=p.velocity.shape)
+    p.affine[:] = np.random.default_rng(2).normal(size=p.affine.shape)
+    p.velocity_gradient[:, 0, 1] = 1.0
+    momentum, mass = p.mass @ p.velocity, p.mass.sum()
+    stage, spread = simulation.operations.stage, []
+    for _ in range(12):
+        even = stage.redistribution
+        redistribute(
+            simulation,
+            lambda ops: spread.append(np.std(ops.places.at_particles(ops.places.crowding()))),
+        )
+        stage.redistribution = even
+        stage.shear = stage.time = 0.1
+        assert stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
+        simulation.operations._sort()
+    assert spread[-1] < 0.4 * spread[0]
+    scale = np.abs(p.mass[:, None] * p.velocity).sum()
+    np.testing.assert_allclose(p.mass @ p.velocity, momentum, rtol=0, atol=1e-13 * scale)
+    assert p.mass.sum() == mass
+
+
+@spaces
+def test_every_full_cell_weighs_what_it_is(space):
+    """Σ_p V_p w_p is the volume of the cells, however the particles lie in them."""
+    simulation = filled(space, SEAMED)
+    p = disorder(simulation, 0.1)
+    found = {}
+
+    def probe(ops):
+        cells = ops.cells()
+        found["weights"] = cells.at_particles(1 / np.maximum(cells.filling(), 0.1))
+
+    redistribute(simulation, probe)
+    size = p.volume / (2 * np.pi * p.position[:, 0]) if space == "axisymmetric" else p.volume
+    assert size @ found["weights"] == pytest.approx((CELLS * DX) ** len(AXES[space]), rel=1e-12)
+
+
+def test_material_comes_to_fill_the_room_there_is():
+    """Particles that lie too close are drawn apart by J, those that lie too far together."""
+    simulation = filled("plane-strain", SEAMED)
+    p = simulation.particles
+    simulation.operations.begin()
+    p.velocity_gradient[:, 0, 1] = 1.0
+    p.volume *= 1.03  # too much of it
+    p.volume_ratio *= 1.03
+    stage = simulation.operations.stage
+    stage.shear = stage.time = 0.5
+    stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
+    np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-0.5 * np.log(1.03)), rtol=1e-10)
+
+
+def test_a_solid_keeps_its_places_and_boxes():
+    simulation = filled("plane-strain", SEAMED, materials=(FLUID, RUBBER))
+    p = disorder(simulation)
+    p.velocity_gradient[:, 0, 1] = 1.0
+    solid = simulation.particles.groups[1].part
+    before = {name: array[solid].copy() for name, array in p.arrays().items()}
+    stage = simulation.operations.stage
+    stage.shear = stage.time = 0.3
+    stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
+    for name in ("position", "box", "volume_ratio", "volume", "quadrature"):
+        np.testing.assert_array_equal(getattr(p, name)[solid], before[name], err_msg=name)
+
+
+def test_solids_alone_are_left_as_they_are():
+    """Nothing to do, to the bit: no fluid, no redistribution."""
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    one, other = (filled("plane-strain", SEAMED, velocity, [RUBBER], kind) for kind in ("even", "none"))
+    for _ in range(10):
+        one.advance(), other.advance()
+    assert np.ptp(one.particles.box) > 0  # they follow the strain
+    for name, array in other.particles.arrays().items():
+        np.testing.assert_array_equal(one.particles.arrays()[name], array, err_msg=name)
+
+
+@pytest.mark.parametrize("rule", ["stretch", "volume", "fixed", "strain"])
+def test_beside_a_fluid_boxes_of_a_solid_follow_the_rule_of_the_shape_function(rule):
+    """And those of the fluid hold its volume, but where the rule is that boxes stay as they are."""
+    shape = {"name": "cpgimp", "domain": rule}
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    simulation = filled("plane-strain", SEAMED, velocity, [FLUID, RUBBER], shape=shape)
+    for _ in range(20):
+        simulation.advance()
+    p = simulation.particles
+    fluid, solid = (group.part for group in p.groups)
+    if rule == "stretch":
+        C = np.einsum("pki,pkj->pij", p.deformation_gradient[solid], p.deformation_gradient[solid])
+        values, vectors = np.linalg.eigh(C)
+        U = np.einsum("pik,pk,pjk->pij", vectors, np.sqrt(values), vectors)
+        expected = p.initial_half_size[solid] * np.stack([U[:, 0, 0], U[:, 1, 1]], axis=1)
+    elif rule == "volume":
+        expected = p.initial_half_size[solid] * p.volume_ratio[solid, None] ** 0.5
+    else:
+        expected = np.full(p.half_size[solid].shape, DX / 4) if rule == "fixed" else p.box[solid]
+    np.testing.assert_allclose(p.half_size[solid], expected, rtol=1e-10)
+    held = np.full(2, DX / 4) if rule == "fixed" else np.sqrt(p.volume[fluid])[:, None] / 2
+    np.testing.assert_allclose(
+        p.half_size[fluid], np.broadcast_to(held, p.half_size[fluid].shape), rtol=1e-10
+    )
+
+
+def test_a_redistribution_without_equal_boxes_is_due_and_weighs():
+    """Shear is added up for it, too, and its weights enter the internal force."""
+
+    class Weighs(Redistribution):
+        name = "weighs"
+        api_version = 2
+        citation = "none"
+
+        def is_due(self, shear):
+            return shear > 0.01
+
+        def redistribute(self, ops, time):
+            ops.weigh(np.zeros(len(ops.shear_rate())))
+
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    case = filled("plane-strain", SEAMED, velocity).case
+    case = case.model_copy(update={"scheme": case.scheme.model_copy(update={"redistribution": Weighs()})})
+    simulation = Simulation(case)
+    while simulation.operations.stage.shear <= 0.01:
+        simulation.advance()
+    simulation.advance()
+    before = simulation.particles.velocity.copy()
+    np.testing.assert_array_equal(simulation.particles.quadrature, 0.0)
+    simulation.operations.map_to_grid()
+    forces = simulation.operations.window.nodes[:, 3:5]  # after mass and two components of the velocity
+    np.testing.assert_array_equal(forces, 0.0)
+    np.testing.assert_array_equal(simulation.particles.velocity, before)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "sentence"),
+    [
+        ({"splitting": True}, "scheme.splitting is true, but redistribution 'even' does not need it"),
+        (
+            {"shape": {"name": "cpgimp", "domain": "stretch"}},
+            "'stretch' of scheme.shape 'cpgimp' acts on solids",
+        ),
+    ],
+)
+def test_what_even_does_not_need_is_said(scheme, sentence):
+    assert any(sentence in said for said in cautions(filled("plane-strain", **scheme).case))
+    assert not any(sentence in said for said in cautions(filled("plane-strain").case))
+
+
+@pytest.mark.parametrize("shape", ["linear", {"name": "cpgimp", "domain": "fixed"}])
+def test_even_works_with_boxes_that_the_weights_do_not_see(shape):
+    """Cells are weighed with the boxes that hold the volume, whatever the weights are made of."""
+    velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
+    simulation = filled("plane-strain", SEAMED, velocity, shape=shape, order="musl")
+    p = disorder(simulation)
+    done = 0
+    for _ in range(60):
+        before = simulation.operations.stage.time
+        simulation.advance()
+        done += simulation.operations.stage.time < before
+    simulation.check()
+    assert done > 0
+    np.testing.assert_allclose(p.box, np.sqrt(p.volume)[:, None].repeat(2, axis=1) / 2, rtol=1e-2)
+    assert 0.5 <= p.quadrature.min() < p.quadrature.max() <= 2.0
+
+
+@spaces
+def test_bits_do_not_depend_on_threads(space):
+    found = []
+    for threads in (1, 2):
+        numba.set_num_threads(threads)
+        each = len(AXES[space])
+        wave = {"amplitude": [0.5] * each, "wave_vector": [10.0] * each}
+        simulation = filled(space, SEAMED, velocity=wave)
+        disorder(simulation)
+        for _ in range(60):
+            simulation.advance()
+        assert simulation.operations.stage.shear < 1.0
+        found.append(simulation.particles.position.tobytes())
+    assert found[0] == found[1]
