@@ -114,7 +114,7 @@ class Body(Model):
         if self.velocity is None:
             return 0.0
         vector = self.velocity if isinstance(self.velocity, list) else self.velocity.amplitude
-        return float(np.linalg.norm(vector))
+        return math.hypot(*vector)
 
 
 class TimeStep(Model):

@@ -95,7 +95,8 @@ def test_two_materials_follow_the_flow_each_at_its_mach_number(validate):
     while simulation.time < 0.3:
         simulation.advance()
         speeds = [group.sound_speed for group in p.groups]
-        assert speeds[0] / speeds[1] == pytest.approx(machs[1] / machs[0], rel=1e-9)
+        # Each follows by 5 % at most in the time that its own sound takes to cross the material.
+        assert speeds[0] / speeds[1] == pytest.approx(machs[1] / machs[0], rel=0.05)
         fastest = max(fastest, simulation.mach_number)
     assert simulation.case.bodies[0].material.sound_speed.mach == machs[0]
     needed = math.sqrt(2 * largest_energy(p, simulation.grid, gravity)) / machs[0]
