@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import logging
 import shutil
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -366,3 +368,38 @@ def test_importing_the_package_loads_none_of_the_heavy_libraries():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+WRITERS = """
+import sys, threading
+from pathlib import Path
+import numpy as np, xarray
+from mpmkit.output.netcdf import read_dataset, write_dataset
+
+def work(name):
+    for turn in range(30):
+        written = xarray.Dataset({f"v{k}": ("time", np.arange(50.0) + turn) for k in range(20)})
+        write_dataset(written, Path(sys.argv[1], f"{name}.nc"))
+        assert read_dataset(Path(sys.argv[1], f"{name}.nc")).identical(written)
+    whole.append(name)
+
+whole = []
+threads = [threading.Thread(target=work, args=(name,)) for name in "abcd"]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(*sorted(whole))
+"""
+
+
+def test_netcdf_files_may_be_written_and_read_from_several_threads(tmp_path):
+    """The library crashed the whole process: HDF5 is not safe to use from two threads."""
+    done = subprocess.run(
+        [sys.executable, "-c", WRITERS, str(tmp_path)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    assert (done.returncode, done.stdout) == (0, "a b c d\n"), done.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 PIECE = bytes(2**20)
 MORE = 2**16
 """Bytes that a NetCDF file may have beside its arrays."""
+_ONE_AT_A_TIME = threading.Lock()
+"""HDF5, the library inside netCDF4, crashes when two threads use it, even on files of their own."""
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
@@ -24,7 +27,8 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     with replacing(path) as partial:
         try:
             # The absolute path, since xarray takes "~" at the begin of a path for the home folder.
-            dataset.to_netcdf(partial.absolute(), engine="netcdf4")
+            with _ONE_AT_A_TIME:
+                dataset.to_netcdf(partial.absolute(), engine="netcdf4")
         except (RuntimeError, OSError) as error:
             if isinstance(error, OSError) and (error.errno or 0) > 0:
                 raise  # a reason of the system's
@@ -41,7 +45,7 @@ def read_dataset(path: Path) -> xarray.Dataset:
     import xarray
 
     # With the engine, or xarray tries others on what is no NetCDF file, and warns of each.
-    with xarray.open_dataset(Path(path).absolute(), engine="netcdf4") as dataset:
+    with _ONE_AT_A_TIME, xarray.open_dataset(Path(path).absolute(), engine="netcdf4") as dataset:
         return dataset.load()
 
 
