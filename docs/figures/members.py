@@ -40,6 +40,9 @@ def cells(millimetres: float) -> Overrides:
     ]
 
 
+WITHOUT = "scheme.redistribution=none"
+
+
 def published(*changes: str) -> Overrides:
     """The accurate case turned back into the paper's, but for the law and what is changed."""
     return [
@@ -47,7 +50,7 @@ def published(*changes: str) -> Overrides:
         "scheme.velocity=flip",
         "scheme.volumetric=own",
         'scheme.shape={"name":"cpgimp","domain":"fixed"}',
-        "scheme.splitting=false",
+        WITHOUT,
         *changes,
     ]
 
@@ -67,7 +70,8 @@ CURES = [
     Member("average", "volume and pressure averaged", "slump", published(AVERAGE)),
     Member("affine", "affine velocities", "slump", published(AVERAGE, APIC)),
     Member("slower", "c = 10 instead of 50 √(2 g h)", "slump", published(AVERAGE, APIC, f"{FACTOR}=10")),
-    Member("split", "boxes that follow, splitting: the default", "slump", []),
+    Member("split", "boxes that follow, splitting", "slump", [WITHOUT, "scheme.splitting=true"]),
+    Member("even", "places kept even instead: the default", "slump", []),
 ]
 """Each cure added to the ones before it, 5 mm."""
 

@@ -89,7 +89,7 @@ def case_model(registry: Registry) -> type[Case]:
         order=_choice(registry.of_kind("order"), "usl"),
         velocity=_choice(registry.of_kind("velocity"), "apic"),
         volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
-        redistribution=_choice(registry.of_kind("redistribution"), "none"),
+        redistribution=_choice(registry.of_kind("redistribution"), "even"),
     )
     model = create_model(
         "Case",

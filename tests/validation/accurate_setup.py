@@ -2,7 +2,7 @@
 
 Yield by return mapping, so that the material truly arrests and no viscous limit binds the step; volumetric
 rate and pressure averaged through the grid, so that nothing locks; an affine velocity update, whose damping
-is physical; particles that are split before they are drawn apart.
+is physical; places, boxes and volumes kept even (the default), so that material may be sheared for long.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ SCHEME: dict[str, Any] = {
     "order": "usl",
     "velocity": "apic",
     "volumetric": "nodal-average",
-    "splitting": True,
     "time_step": {"fraction": 0.4},
 }
 PAPER: dict[str, Any] = {
@@ -22,6 +21,7 @@ PAPER: dict[str, Any] = {
     "order": "usl",
     "velocity": "flip",
     "volumetric": "own",
+    "redistribution": "none",
 }
 """The set-up of Ferreira et al.: to every particle its own pressure, and a box that stays as it was."""
 

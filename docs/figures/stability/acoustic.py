@@ -39,7 +39,7 @@ WAVE = {
             "velocity": {"amplitude": [3e-4, 0], "wave_vector": [2 * math.pi / CELLS, 0]},
         }
     ],
-    "scheme": {"volumetric": "own"},
+    "scheme": {"volumetric": "own", "redistribution": "none"},
 }
 # A wave's energies swing by ω dt/2, being known half a step apart, and its phase drifts; neither is growth.
 SCENES = {

@@ -41,7 +41,7 @@ def slump(cell: float, scheme: dict, splitting: bool) -> tuple[float, float, flo
         DOCS.parent / "cases/slump.json",
         [f"grid.cell_size={cell / 1000}", f'grid.domain={{"r": [0, {radius}], "z": [0, {height}]}}'],
     ).model_dump()
-    case["scheme"] |= {"order": "usf", "splitting": splitting} | scheme
+    case["scheme"] |= {"order": "usf", "redistribution": "none", "splitting": splitting} | scheme
     simulation = mpmkit.Simulation(mpmkit.parse_case(case))
     while simulation.time < 0.5:
         simulation.advance()

@@ -48,6 +48,8 @@ def slump(volumes: str | float) -> Iterator[tuple[float, float, float]]:
             "grid.cell_size=0.01",
             'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}',
             f"scheme.volumetric={treatment}",
+            "scheme.redistribution=none",
+            "scheme.splitting=true",
         ],
     )
     simulation, crossed = mpmkit.Simulation(case), 0.0

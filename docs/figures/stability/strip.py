@@ -44,7 +44,7 @@ def strip(count: int, scheme: dict, speed: float, longest: float) -> mpmkit.Simu
                 "faces": {"x_min": "slip", "z_min": "slip", "z_max": "slip"},
             },
             "bodies": bodies,
-            "scheme": {"order": "usf", "velocity": "flip", **scheme},
+            "scheme": {"order": "usf", "velocity": "flip", "redistribution": "none", **scheme},
         }
     )
     # Waves over a cell are faster in a strip that is drawn out, √((lambda² + 1)/2); a step that is short

@@ -51,5 +51,9 @@ def block(cells: int) -> dict:
                 "velocity": {"amplitude": [0.0, -0.02], "wave_vector": [0.0, np.pi / (2 * SIDE)]},
             }
         ],
-        "scheme": {"velocity": "flip", "volumetric": {"name": "nodal-average", "relaxation": 0.0}},
+        "scheme": {
+            "velocity": "flip",
+            "volumetric": {"name": "nodal-average", "relaxation": 0.0},
+            "redistribution": "none",
+        },
     }

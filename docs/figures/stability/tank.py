@@ -57,7 +57,7 @@ def tank(scheme: dict, cells: int = 10, amplitude: float = 0.1, law: dict | None
                     },
                 }
             ],
-            "scheme": {"time_step": {"fraction": 0.4}, **scheme},
+            "scheme": {"redistribution": "none", "time_step": {"fraction": 0.4}, **scheme},
         }
     )
     simulation = mpmkit.Simulation(case)

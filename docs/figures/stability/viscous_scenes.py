@@ -38,7 +38,7 @@ def block(dx: float, m: float, form: str, scheme: dict) -> mpmkit.case.Case:
                     "velocity": {"amplitude": [nudge, nudge], "wave_vector": [2.7 / dx, 1.9 / dx]},
                 }
             ],
-            "scheme": {"volumetric": "own", **scheme},
+            "scheme": {"volumetric": "own", "redistribution": "none", **scheme},
         }
     )
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from mpmkit.contracts import Redistributing, Redistribution, hookimpl
 
-DUE = 0.02
+DUE = 0.05
 """Shear ∫ γ̇ dt between two corrections."""
 FULL = 0.75
 """Crowding from which a node is full; it is inside if all around it are full as well."""
@@ -13,7 +13,7 @@ CROWDED = 1.05
 MOST = 0.1
 """Departure of ln κ that counts at most: what lies over each other is not thrown apart."""
 RATE = 2.0
-"""Shift over γ̇ dt h² ∇κ."""
+"""Rate at which crowding is undone, over γ̇: by J, in cells, and by the shift, in squares of the spacing."""
 STEEP, LOOSE = 0.25, 0.8
 """Change of the crowding over a cell above which, and crowding below which, a particle is at the surface."""
 LONGEST = 0.2
@@ -28,7 +28,7 @@ class Even(Redistribution):
     All rates go with the shear rate γ̇, so that nothing happens at rest, in rigid motion, or by making steps
     shorter. With the crowding κ of the grid's nodes and κ_f of a lattice as fine as the particles' spacing h:
 
-        d ln J/dt = -γ̇ ln κ inside, and -γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
+        d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
         dx/dt = -2 γ̇ h² ∇κ_f, what is missing counting inside only, with no part out of the surface,
         V of the internal force ← V Σ_c part_pc / Q_c, with the filling Q_c of full cells.
     """
@@ -63,7 +63,7 @@ class Even(Redistribution):
         inside = ops.nodes.least_around(crowding) >= FULL
         rate = ops.nodes.average(ops.shear_rate())
         shift = _shift(ops, crowding, inside, rate, time)
-        ops.scale_volume_ratio(np.exp(-time * ops.nodes.at_particles(rate * _excess(crowding, inside))))
+        ops.scale_volume_ratio(np.exp(-RATE * time * ops.nodes.at_particles(rate * _excess(crowding, inside))))
         ops.shift(shift)
         ops.weigh(_weights(ops))
 
