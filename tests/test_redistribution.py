@@ -195,7 +195,7 @@ def test_material_comes_to_fill_the_room_there_is():
     stage = simulation.operations.stage
     stage.shear = stage.time = 0.5
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
-    np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-0.5 * np.log(1.03)), rtol=1e-10)
+    np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-2 * 0.5 * np.log(1.03)), rtol=1e-10)
 
 
 def test_a_solid_keeps_its_places_and_boxes():

@@ -32,7 +32,7 @@ class SplineLattice:
         fill_splines(position, 1 / block.spacing, self._base, self._weight, self._gradient)
 
     def crowding(self) -> np.ndarray:
-        crowding = self._sums(self._size, self._size)[:, 0] / self.block.room()
+        crowding = self._sums(self._size, self._size)[:, 0] / self.block.room
         self.block.fill(crowding)
         return crowding
 
@@ -92,8 +92,5 @@ class SplineLattice:
         scatter_pairs(self._dim, SUPPORT)(
             pairs, block.strides, block.lower, self._tasks, self._base, self._weight, weight, values
         )
-        for column in range(PAIR):
-            sums = pairs[:, column].copy()
-            block.fold(sums)
-            pairs[:, column] = sums
+        block.fold(pairs)
         return pairs

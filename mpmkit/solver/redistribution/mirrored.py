@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -34,6 +33,9 @@ class Mirrored:
         window: the nodes that particles can touch.
         times: nodes of the block a cell.
         centred: whether it holds the cells and not the nodes between them.
+
+    Attributes:
+        room: size of what belongs to each node or cell, m² or m³, ``(count,)``: half of it at a wall.
     """
 
     def __init__(self, grid: Grid, window: Window, times: int, centred: bool) -> None:
@@ -53,6 +55,8 @@ class Mirrored:
             (int(-low), int(n * times - low)) for low, n in zip(self.lower, grid.cells, strict=True)
         ]
         self._centred = centred
+        self._ghosts = self._ghost_planes()
+        self.room = self._room()
 
     def empty(self, width: int = 1) -> np.ndarray:
         """Zeros, ``(count, width)``, with room behind them for a row of pairs."""
@@ -66,18 +70,26 @@ class Mirrored:
         return field
 
     def fold(self, values: np.ndarray) -> None:
-        """Add what lies behind the faces to its images, in place; it is zero afterwards."""
-        for along, ghost, image in self._ghosts(values):
-            along[image] += along[ghost]
-            along[ghost] = 0.0
+        """Add what lies behind the faces to its images, in place; it is zero afterwards.
+
+        Args:
+            values: ``(count,)`` or ``(count, width)``.
+        """
+        block = self._block(values)
+        for ghost, image in self._ghosts:
+            block[image] += block[ghost]
+            block[ghost] = 0.0
 
     def fill(self, values: np.ndarray) -> None:
         """Copy the images to what lies behind the faces, in place."""
-        for along, ghost, image in reversed(list(self._ghosts(values))):
-            along[ghost] = along[image]
+        block = self._block(values)
+        for ghost, image in reversed(self._ghosts):
+            block[ghost] = block[image]
 
-    def room(self) -> np.ndarray:
-        """Size of what belongs to each node or cell, m² or m³, ``(count,)``: half of it at a wall."""
+    def _block(self, values: np.ndarray) -> np.ndarray:
+        return values.reshape(*self.shape, *values.shape[1:])
+
+    def _room(self) -> np.ndarray:
         room = np.full(self.shape, self.spacing**self.grid.dim)
         if not self._centred:
             for axis, (first, last) in enumerate(self._ends):
@@ -87,24 +99,26 @@ class Mirrored:
                         along[wall] /= 2
         return room.ravel()
 
-    def _ghosts(self, values: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:
-        """Planes behind the faces, each with that of its images: views with the axis first."""
-        block = values.reshape(self.shape)
+    def _ghost_planes(self) -> list[tuple[tuple, tuple]]:
+        """Index of each plane behind the faces, with that of its image."""
+        found = []
         for axis, (first, last) in enumerate(self._ends):
-            along = np.moveaxis(block, axis, 0)
             for ghost, image in self._planes(axis, first, last):
-                if 0 <= ghost < len(along) and 0 <= image < len(along):
-                    yield along, ghost, image
+                if 0 <= ghost < self.shape[axis] and 0 <= image < self.shape[axis]:
+                    before = (slice(None),) * axis
+                    found.append(((*before, ghost), (*before, image)))
+        return found
 
-    def _planes(self, axis: int, first: int, last: int) -> Iterator[tuple[int, int]]:
+    def _planes(self, axis: int, first: int, last: int) -> list[tuple[int, int]]:
         """Planes of ghosts of an axis and of their images; ``first`` and ``last`` are at its ends."""
         low, high = self.grid.faces[axis]
         if low == PERIODIC:
             ghosts = (first - 1, last) if self._centred else (first - 1, last, last + 1)
-            yield from ((ghost, first + (ghost - first) % (last - first)) for ghost in ghosts)
-            return
+            return [(ghost, first + (ghost - first) % (last - first)) for ghost in ghosts]
         beside = 0 if self._centred else 1  # the cell at a wall is its own neighbour, a node has one
+        planes = []
         if low != OPEN:
-            yield first - 1, first + beside
+            planes.append((first - 1, first + beside))
         if high != OPEN:
-            yield last + beside, last - 1
+            planes.append((last + beside, last - 1))
+        return planes

@@ -48,6 +48,7 @@ class Stage:
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
         self.shear = self.time = 0.0
+        self._blocks: dict[tuple, Mirrored] = {}
         self._follows = scheme.shape.particle_domain != "fixed"
         self._grid, self._particles, self._radial = grid, particles, radial
         self._times = max(1, round(grid.cell_size / self._typical_spacing()))
@@ -106,7 +107,19 @@ class Stage:
         return True
 
     def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
-        return SplineLattice(Mirrored(self._grid, self._window, times, False), self._tasks, position, size)
+        return SplineLattice(self._block(times, centred=False), self._tasks, position, size)
+
+    def _block(self, times: int, centred: bool) -> Mirrored:
+        """The block over the window, kept for as long as the window stays where it is."""
+        window = self._window
+        where = (*window.lower.tolist(), *window.shape)
+        key = (*where, times, centred)
+        if key not in self._blocks:
+            self._blocks = {
+                known: block for known, block in self._blocks.items() if known[: len(where)] == where
+            }
+            self._blocks[key] = Mirrored(self._grid, window, times, centred)
+        return self._blocks[key]
 
     # --- For the redistribution
 
@@ -114,8 +127,10 @@ class Stage:
         return shear_rate(self._particles.velocity_gradient)
 
     def cells(self) -> contract.Cells:
-        p, block = self._particles, Mirrored(self._grid, self._window, 1, True)
-        return BoxCells(block, self._tasks, p.position, p.box, np.ascontiguousarray(self._sizes()))
+        p = self._particles
+        return BoxCells(
+            self._block(1, centred=True), self._tasks, p.position, p.box, np.ascontiguousarray(self._sizes())
+        )
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
         p = self._particles
@@ -133,11 +148,11 @@ class Stage:
         self._require(displacement, "a displacement", before.shape)
         low, high = self._kept_from_walls()
         for part in self._fluids():
-            moved = displacement[part].any(axis=1)  # others stay where they are, to the bit
-            shifted = np.clip(p.position[part] + displacement[part], low, high)
-            p.position[part][moved] = shifted[moved]
+            moved = displacement[part] != 0  # others stay where they are, to the bit
+            shifted = np.minimum(np.maximum(p.position[part] + displacement[part], low), high)
+            np.copyto(p.position[part], shifted, where=moved)
         if p.affine.shape[1]:
-            change = np.einsum("pij,pj->pi", p.affine, p.position - before)
+            change = (p.affine @ (p.position - before)[:, :, None])[:, :, 0]
             for axis in range(p.dim):
                 along = np.ascontiguousarray(change[:, axis])
                 # What a node gains is taken from all around it, so that no momentum is made.

@@ -4,7 +4,7 @@ import numpy as np
 
 from mpmkit.contracts import Redistributing, Redistribution, hookimpl
 
-DUE = 0.05
+DUE = 0.1
 """Shear ∫ γ̇ dt between two corrections."""
 FULL = 0.75
 """Crowding from which a node is full; it is inside if all around it are full as well."""
