@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mpmkit.case import parse_case
-from mpmkit.case.plugins import cautions
+from mpmkit.case.forewarnings import forewarnings
 from mpmkit.contracts import Redistribution
 from mpmkit.solver.simulation import Simulation
 
@@ -280,16 +280,28 @@ def test_a_redistribution_without_equal_boxes_is_due_and_weighs():
 @pytest.mark.parametrize(
     ("scheme", "sentence"),
     [
-        ({"splitting": True}, "scheme.splitting is true, but redistribution 'even' does not need it"),
+        (
+            {"splitting": True},
+            "scheme.splitting is true, but scheme.redistribution 'even' keeps boxes of fluids of equal sides",
+        ),
         (
             {"shape": {"name": "cpgimp", "domain": "stretch"}},
             "'stretch' of scheme.shape 'cpgimp' acts on solids",
         ),
     ],
 )
+def test_few_particles_in_three_dimensions_are_a_warning():
+    few, flat, rubber = filled("3d"), filled("plane-strain"), filled("3d", materials=(RUBBER,))
+    data = few.case.model_dump()
+    data["bodies"][0]["particles_per_cell"] = 27
+    assert any("bodies.0 has 8 particles a cell" in said for said in forewarnings(few.case))
+    for case in (flat.case, rubber.case, parse_case(data)):
+        assert not any("particles a cell" in said for said in forewarnings(case))
+
+
 def test_what_even_does_not_need_is_said(scheme, sentence):
-    assert any(sentence in said for said in cautions(filled("plane-strain", **scheme).case))
-    assert not any(sentence in said for said in cautions(filled("plane-strain").case))
+    assert any(sentence in said for said in forewarnings(filled("plane-strain", **scheme).case))
+    assert not any(sentence in said for said in forewarnings(filled("plane-strain").case))
 
 
 @pytest.mark.parametrize("shape", ["linear", {"name": "cpgimp", "domain": "fixed"}])

@@ -22,15 +22,47 @@ MOST = 5
 """Sentences of one kind: of a hundred drops, five pairs say all."""
 CONTIGUOUS = 1e-6
 """Gap, cells, up to which two pieces of a solid are one body; a wider one is meant to be open."""
+ENOUGH_IN_3D = 27
+"""Particles a cell, see docs/stability/long_shear.md."""
 NOTICED = 0.1
 """Part of gravity, away from a wall, that is worth a word."""
 
 
 def forewarnings(case: Case) -> list[str]:
     """A sentence for each thing that the scene is known to do wrong, and each value that cannot be meant."""
-    kinds = (_falls_out, _hangs, _touching, implausible)
+    kinds = (_falls_out, _hangs, _touching, _few_particles, _needless, implausible)
     with np.errstate(all="ignore"):  # a case may have numbers whose products are beyond any
         return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
+
+
+# --- Particles
+
+
+def _few_particles(case: Case) -> Iterator[str]:
+    """Fluids in three dimensions with fewer particles a cell than keep their yield stress in disorder."""
+    if case.space_.dim < 3 or not case.scheme.redistribution.equal_boxes:
+        return
+    for number, body in enumerate(case.bodies):
+        count = math.prod(body.particles_along_axes(case.space_.dim))
+        if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
+            yield (
+                f"bodies.{number} has {count} particles a cell: in three dimensions a fluid that is sheared far "
+                f"flows too easily with fewer than {ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far with 8, "
+                "0.6 % with 27); see particles_per_cell"
+            )
+
+
+def _needless(case: Case) -> Iterator[str]:
+    """What a redistribution that keeps boxes of equal sides takes the place of."""
+    scheme = case.scheme
+    if not scheme.redistribution.equal_boxes:
+        return
+    fluids = [body for body in case.bodies if body.material.constitutive_law.uses_equation_of_state]
+    kept = f"scheme.redistribution '{scheme.redistribution.name}' keeps boxes of fluids of equal sides"
+    if scheme.splitting and fluids:
+        yield f"scheme.splitting is true, but {kept}, which are hardly ever longer than a cell"
+    if scheme.shape.particle_domain == "stretch" and fluids:
+        yield f"{kept}: the domain 'stretch' of scheme.shape '{scheme.shape.name}' acts on solids only"
 
 
 # --- Walls

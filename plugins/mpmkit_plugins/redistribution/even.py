@@ -41,20 +41,6 @@ class Even(Redistribution):
     )
     equal_boxes = True
 
-    def cautions(self, case) -> list[str]:
-        said = []
-        if case.scheme.splitting:
-            said.append(
-                "scheme.splitting is true, but redistribution 'even' does not need it: boxes of fluids keep "
-                "equal sides, and are hardly ever longer than a cell"
-            )
-        if case.scheme.shape.particle_domain == "stretch":
-            said.append(
-                "redistribution 'even' gives boxes of fluids equal sides; the domain 'stretch' of "
-                f"scheme.shape '{case.scheme.shape.name}' acts on solids only"
-            )
-        return said
-
     def is_due(self, shear: float) -> bool:
         return shear >= DUE
 
@@ -63,7 +49,9 @@ class Even(Redistribution):
         inside = ops.nodes.least_around(crowding) >= FULL
         rate = ops.nodes.average(ops.shear_rate())
         shift = _shift(ops, crowding, inside, rate, time)
-        ops.scale_volume_ratio(np.exp(-RATE * time * ops.nodes.at_particles(rate * _excess(crowding, inside))))
+        ops.scale_volume_ratio(
+            np.exp(-RATE * time * ops.nodes.at_particles(rate * _excess(crowding, inside)))
+        )
         ops.shift(shift)
         ops.weigh(_weights(ops))
 
