@@ -277,6 +277,15 @@ def test_a_redistribution_without_equal_boxes_is_due_and_weighs():
     np.testing.assert_array_equal(simulation.particles.velocity, before)
 
 
+def test_few_particles_in_three_dimensions_are_a_warning():
+    few, flat, rubber = filled("3d"), filled("plane-strain"), filled("3d", materials=(RUBBER,))
+    data = few.case.model_dump()
+    data["bodies"][0]["particles_per_cell"] = 27
+    assert any("bodies.0 has 8 particles a cell" in said for said in forewarnings(few.case))
+    for case in (flat.case, rubber.case, parse_case(data)):
+        assert not any("particles a cell" in said for said in forewarnings(case))
+
+
 @pytest.mark.parametrize(
     ("scheme", "sentence"),
     [
@@ -290,15 +299,6 @@ def test_a_redistribution_without_equal_boxes_is_due_and_weighs():
         ),
     ],
 )
-def test_few_particles_in_three_dimensions_are_a_warning():
-    few, flat, rubber = filled("3d"), filled("plane-strain"), filled("3d", materials=(RUBBER,))
-    data = few.case.model_dump()
-    data["bodies"][0]["particles_per_cell"] = 27
-    assert any("bodies.0 has 8 particles a cell" in said for said in forewarnings(few.case))
-    for case in (flat.case, rubber.case, parse_case(data)):
-        assert not any("particles a cell" in said for said in forewarnings(case))
-
-
 def test_what_even_does_not_need_is_said(scheme, sentence):
     assert any(sentence in said for said in forewarnings(filled("plane-strain", **scheme).case))
     assert not any(sentence in said for said in forewarnings(filled("plane-strain").case))

@@ -46,9 +46,9 @@ def _few_particles(case: Case) -> Iterator[str]:
         count = math.prod(body.particles_along_axes(case.space_.dim))
         if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
             yield (
-                f"bodies.{number} has {count} particles a cell: in three dimensions a fluid that is sheared far "
-                f"flows too easily with fewer than {ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far with 8, "
-                "0.6 % with 27); see particles_per_cell"
+                f"bodies.{number} has {count} particles a cell: in three dimensions a fluid that is sheared "
+                f"far flows too easily with fewer than {ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
+                "with 8, 0.6 % with 27); see particles_per_cell"
             )
 
 
