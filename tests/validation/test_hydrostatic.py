@@ -148,13 +148,14 @@ def test_dissipative_updates_rest_as_well(validate, space, velocity):
 def test_rest_lasts(validate, space):
     """For as long again, nothing moves and no energy is fed in.
 
-    With FLIP a trace of particle velocity stays that the grid does not see, and that moves nothing.
+    With FLIP a trace of particle velocity stays that the grid does not see, and that moves nothing. Boxes of
+    equal sides leave a mode that decays by a factor of 13 in twice ``SETTLED``: it has to be gone first.
     """
-    simulation = settle(column(space, cells=10), 2 * SETTLED)
+    simulation = settle(column(space, cells=10), 3 * SETTLED)
     p = simulation.particles
     speed = simulation.measures(p)["max_speed"]
     start = p.position[np.argsort(p.number)].copy()
-    settle(simulation, 4 * SETTLED)
+    settle(simulation, 6 * SETTLED)
     assert simulation.measures(p)["max_speed"] < 1.01 * speed
     moved = np.abs(p.position[np.argsort(p.number)] - start).max() / HEIGHT
     validate(f"Hydrostatic column, {space}: moved over H, for as long again", moved, below(1e-7, "0"))

@@ -10,7 +10,7 @@ FULL = 0.75
 """Crowding from which a node is full; it is inside if all around it are full as well."""
 CROWDED = 1.05
 """Crowding that still counts as none where a node is not inside."""
-MOST = 0.1
+MOST = 0.4
 """Departure of ln κ that counts at most: what lies over each other is not thrown apart."""
 RATE = 2.0
 """Rate at which crowding is undone, over γ̇: by J, in cells, and by the shift, in squares of the spacing."""
