@@ -46,7 +46,7 @@ def test_splitting_keeps_mass_and_what_a_law_remembers(validate):
                 },
             }
         ],
-        "scheme": {"velocity": "apic", "splitting": True},
+        "scheme": {"velocity": "apic", "redistribution": "none", "splitting": True},
     }
     simulation = mpmkit.Simulation(mpmkit.parse_case(case, registry=registry))
     p = simulation.particles

@@ -90,7 +90,7 @@ def test_power_of_the_pressure_is_what_the_compressive_energy_loses(validate, sp
 @pytest.mark.parametrize("space", FACES)
 def test_relaxation_keeps_the_volume_and_only_loses_energy(space):
     rng = np.random.default_rng(3)
-    simulation = block(space, volumetric={"name": "nodal-average", "relaxation": 5.0})
+    simulation = block(space, volumetric={"name": "nodal-average", "relaxation": 5.0}, redistribution="none")
     operations, p = simulation.operations, simulation.particles
     p.velocity[:] = 1.0
     simulation.choose_time_step()
@@ -121,6 +121,7 @@ def test_relaxation_leaves_two_fluids_at_one_pressure(validate):
             }
             for low, speed in ((0.0, 10.0), (0.4, 30.0))
         ],
+        "scheme": {"redistribution": "none"},
     }
     simulation = mpmkit.Simulation(mpmkit.parse_case(case))
     operations, p = simulation.operations, simulation.particles
