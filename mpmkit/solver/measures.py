@@ -17,9 +17,20 @@ from .particles import Particles
 
 @dataclass(frozen=True)
 class Measures:
-    """Measures a scene. Lengths include the particle domains and what a symmetry plane has cut off, and leave
-    out particles that are not in the domain, which a guard is about to stop the run for; masses, momenta and
-    energies are of the part that is simulated.
+    """Measures a scene. Lengths are of the material in the domain, what a symmetry plane has cut off
+    included; masses, momenta and energies are of the part that is simulated.
+
+    Along each axis the material reaches from a particle as far as its box, half-size l, in two limits:
+
+        from x - min(l, Δx/2) to x + min(l, Δx/2), cut off at the faces of the domain.
+
+    *Half a cell*: a box stands for the volume around a particle as long as its neighbours share nodes with it.
+    The grid gives no weight to what of a box is longer than a cell, and nothing ties its ends to the material
+    any more (``fractured_fraction``): strain alone would draw a box in a splash out to kilometres. *The
+    faces*: no material is behind a wall. Boxes of an undeformed body, of a sheet, and of a body that is drawn
+    out until a box is as long as a cell, meet end to end, so that lengths of these are exact.
+
+    Particles that are not in the domain, which a guard is about to stop the run for, are left out.
     """
 
     case: Case
@@ -35,12 +46,13 @@ class Measures:
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
-        low = (particles.position - particles.box).min(axis=0)
-        high = (particles.position + particles.box).max(axis=0)
+        ends = extents(
+            particles.position, particles.box, grid.dim, grid.extent, grid.periodic, grid.cell_size / 2
+        )
         planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
-        middle = (low + high)[:-1] / 2
+        middle = ends[:-1].mean(axis=1)
         axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
-        return cls(case, grid, float(high[-1]), axis)
+        return cls(case, grid, float(ends[-1, 1]), axis)
 
     def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
         """All scalar measures by the names of the history's variables."""
@@ -69,7 +81,7 @@ class Measures:
     def spread(self, p: Particles) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
         grid, periodic, diameters = self.grid, self.grid.periodic, []
-        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic)
+        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic, self._longest)
         for a, (low, high) in enumerate(ends.tolist()):
             if periodic[a] or low > high:
                 continue
@@ -85,8 +97,13 @@ class Measures:
 
     def _height(self, p: Particles, of: np.ndarray) -> float:
         """Top of the material above the grid's lower face, m; not a number where there is none."""
-        tops = (p.position[:, -1] + p.box[:, -1])[of]
-        return float(tops.max()) if len(tops) else np.nan
+        tops = (p.position[:, -1] + np.minimum(p.box[:, -1], self._longest))[of]
+        return min(float(tops.max()), float(self.grid.extent[-1])) if len(tops) else np.nan
+
+    @property
+    def _longest(self) -> float:
+        """m, half-size of the longest box that counts as it is."""
+        return self.grid.cell_size / 2
 
     def _inside(self, p: Particles) -> np.ndarray:
         """Particles in the domain; one whose position is not finite is not."""
