@@ -114,9 +114,7 @@ def lengths_of(path: Path, results: RunResults) -> dict[str, float]:
     return found | {"height": _ends(frame, results, vertical, column[vertical])[1] - floor}
 
 
-def _ends(
-    frame: dict[str, np.ndarray], results: RunResults, axis: str, column: int
-) -> tuple[float, float]:
+def _ends(frame: dict[str, np.ndarray], results: RunResults, axis: str, column: int) -> tuple[float, float]:
     """Lowest and highest place, m, that the boxes of a frame reach along an axis, within the domain."""
     low, high = results.case["grid"]["domain"][axis]
     position, half_size = frame["position"][:, column], frame["half_size"][:, column]

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..kernels.extents import extents
+from .density import density
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from .grid import Grid
 from .particles import Particles
@@ -24,11 +25,11 @@ class Measures:
 
         from x - min(l, Δx/2) to x + min(l, Δx/2), cut off at the faces of the domain.
 
-    *Half a cell*: a box stands for the volume around a particle as long as its neighbours share nodes with it.
-    The grid gives no weight to what of a box is longer than a cell, and nothing ties its ends to the material
-    any more (``fractured_fraction``): strain alone would draw a box in a splash out to kilometres. *The
-    faces*: no material is behind a wall. Boxes of an undeformed body, of a sheet, and of a body that is drawn
-    out until a box is as long as a cell, meet end to end, so that lengths of these are exact.
+    *Half a cell*: a box stands for the volume around a particle while its neighbours share nodes with it.
+    The grid gives no weight to the part of a box that is beyond a cell, and nothing ties its ends to the
+    material any more (``fractured_fraction``): strain alone draws a box in a splash out to kilometres.
+    *The faces*: no material is behind a wall. Boxes of an undeformed body, of a sheet, and of a body that is
+    drawn out until a box is as long as a cell, meet end to end: their lengths are exact.
 
     Particles that are not in the domain, which a guard is about to stop the run for, are left out.
     """
@@ -59,6 +60,7 @@ class Measures:
         inside = self._inside(p)
         height = self._height(p, inside)
         axis_height = self._height(p, inside & self._near_axis(p))
+        filled = density(p, self.grid, self.case.space_.radial)
         squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
         # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
@@ -76,6 +78,8 @@ class Measures:
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
             "max_speed": float(np.sqrt(squared.max())),
             "fractured_fraction": self.fractured(p),
+            "density_mean": filled.mean,
+            "density_worst": filled.worst,
         }
 
     def spread(self, p: Particles) -> float:
