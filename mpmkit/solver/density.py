@@ -22,10 +22,10 @@ class Density:
 
     κ_n = Σ_p V_p N_np / V_n, with the quadratic B-splines N of the grid's nodes, the present volumes
     V_p = J V_0 of the particles and the room V_n of a node, all of it mirrored at walls; in an axisymmetric
-    scene with areas V / (2πr). Mass over volume is ρ/J in the material and Σ m_p N_np / V_n at a node. Their quotient is κ: it
-    is one, whatever the pressure, where particles lie as densely as their volumes say. That holds for solids
-    as well, whose J is that of their deformation. The *interior* are the nodes with κ >= 0.75 that have
-    neighbours with κ >= 0.75 on all sides; at a surface, less is right.
+    scene with areas V / (2πr). Mass over volume is ρ/J in the material and Σ m_p N_np / V_n at a node. Their
+    quotient is κ: it is one, whatever the pressure, where particles lie as densely as their volumes say. That
+    holds for solids as well, whose J is that of their deformation. The *interior* are the nodes with
+    κ >= 0.75 whose neighbours all have κ >= 0.75 as well; at a surface, less is right.
 
     Means are by volume. Where no node is inside, they are NaN, and so is the worst.
     """

@@ -157,7 +157,8 @@ class Guards:
         why = remedy(s)
         if balance.redistributed > balance.created / 2:
             name = s.case.scheme.redistribution.name
-            why = f"redistribution '{name}' has put in {balance.redistributed:.4g} J: try another one, or 'none'"
+            put_in = f"redistribution '{name}' has put in {balance.redistributed:.4g} J"
+            why = f"{put_in}: try another one, or 'none'"
         raise _stopped(s, "energy", fastest, what, why)
 
     def _stop_of_density(self, found: Density) -> NoReturn:
