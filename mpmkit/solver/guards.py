@@ -30,6 +30,7 @@ class Guards:
     Attributes:
         watches_energy: set it to False where something beside gravity does work, such as forces that a
             program adds to the nodes; a law that does work of its own says so itself (``passive``).
+        watches_density: set it to False to follow a flow beyond the point at which its density is wrong.
         density: the watch over the density of the interior.
     """
 
@@ -39,6 +40,7 @@ class Guards:
         self._longest_step = 0.0
         self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
+        self.watches_density = True
         self.density = DensityWatch()
 
     @property
@@ -90,7 +92,7 @@ class Guards:
             if self.watches_energy and self.balance.broken:
                 self._stop_of_energy(self.balance)
         uneven = self.density.look(self._scene)
-        if uneven is not None:
+        if uneven is not None and self.watches_density:
             self._stop_of_density(uneven)
 
     def accept_changes(self) -> None:
