@@ -259,15 +259,28 @@ def test_more_that_is_known_to_fail():
     assert "locks" in " ".join(cautions(load_case(CASES / "slump.json", [*stick, "scheme.volumetric=own"])))
     assert cautions(load_case(CASES / "slump.json", stick)) == []
     water = ["bodies.0.material.yield_stress=0", "bodies.0.material.consistency=0.001"]
+    none = "scheme.redistribution=none"
     lasting, torn = [*water, "until=30"], "scheme.splitting=false"
-    weak = 'scheme.volumetric={"name": "nodal-average", "relaxation": 0.1}'
-    assert cautions(load_case(CASES / "slump.json", lasting)) == []
-    for change in (torn, weak):
-        assert "loses volume" in " ".join(cautions(load_case(CASES / "slump.json", [*lasting, change])))
+    own = "scheme.volumetric=own"
+    for change in ("scheme.splitting=true", torn, own):  # which do not cure it
+        said = " ".join(cautions(load_case(CASES / "slump.json", [*lasting, none, change])))
+        assert "redistribution 'none' does not keep places and volumes of a fluid the same" in said
+        assert "'even' keeps them the same" in said
     even = "scheme.redistribution=even"  # keeps the volume of water, see tests/validation/test_long_shear.py
     assert cautions(load_case(CASES / "slump.json", [*lasting, torn, even])) == []
-    assert cautions(load_case(CASES / "slump.json", [*water, torn])) == []
+    assert cautions(load_case(CASES / "slump.json", [*water, none, torn])) == []
+    assert cautions(load_case(CASES / "slump.json", ["until=30", none])) == []  # it is at rest by then
     assert "damps" in " ".join(cautions(load_case(CASES / "slump.json", ["scheme.velocity=pic"])))
+
+
+def test_a_film_is_cautioned_of_what_goes_wrong_in_it_and_of_nothing_else():
+    """Neither a yield stress nor own volumes help a film that flows for long; and they do not lock in it."""
+    film = ["scheme.redistribution=none"]
+    assert cautions(load_case(CASES / "film.json", film)) == []
+    for volumetric in ("own", "nodal-average"):
+        longer = [*film, "until=5", f"scheme.volumetric={volumetric}"]
+        (said,) = cautions(load_case(CASES / "film.json", longer))
+        assert "redistribution 'none' does not keep places and volumes of a fluid the same" in said
 
 
 # --- In the plan

@@ -15,7 +15,7 @@ from mpmkit.report.images import beyond_faces
 from mpmkit.report.outline import draw
 from mpmkit.report.panels import Panels
 from mpmkit.report.run_results import read_results
-from mpmkit.report.section import Section, plane_of, section_of
+from mpmkit.report.section import Section, lengths_of, plane_of, section_of
 from mpmkit.spaces import SPACES
 
 CELL = 0.1
@@ -27,7 +27,7 @@ def lattice(*ends):
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(ends))
 
 
-def write_run(path, space, frames, faces=(), ended="finished", body=None, **output):
+def write_run(path, space, frames, faces=(), ended="finished", body=None, half_size=CELL / 4, **output):
     """A run directory with frames given as ``{time: positions}`` or ``{time: (positions, speeds)}``."""
     run, axes = RunDirectory(path), SPACES[space].axes
     run.claim()
@@ -40,7 +40,7 @@ def write_run(path, space, frames, faces=(), ended="finished", body=None, **outp
         position, speed = given if isinstance(given, tuple) else (given, np.ones(len(given)))
         fields = {
             "speed": speed,
-            "half_size": np.full((len(position), 3), CELL / 4),
+            "half_size": np.full((len(position), 3), half_size),
             "body": np.zeros(len(position), np.int32) if body is None else body,
         }
         writer.write(time, step, fields, position)
@@ -65,6 +65,25 @@ def test_between_two_bodies_the_section_goes_through_the_nearest_particles(tmp_p
     assert abs(plane_of(results)) == pytest.approx(0.425)
     assert len(drawn(results)) == 2 * 12 * 8  # the layers within a cell
     assert "section at y = " in draw(results).get_suptitle()
+
+
+@pytest.mark.parametrize("half_size", [CELL / 4, 0.7, 5e3])
+def test_no_box_is_drawn_or_measured_longer_than_a_cell_or_beyond_the_domain(tmp_path, half_size):
+    """Strain can draw the box of a splash out to kilometres; that is not where material is."""
+    faces = {"x_min": "slip", "x_max": "slip", "z_min": "slip"}
+    points = lattice((-1.0, 0.2), (0, 0.4))
+    results = write_run(tmp_path, "plane-strain", {0.0: points}, faces, half_size=half_size)
+    reach = min(half_size, CELL / 2)
+    assert drawn(results).half_size.max() == reach
+    lengths = lengths_of(results.frames[0][1], results)
+    assert lengths["spread"] == pytest.approx(1.2 - CELL / 4 + reach)  # cut off at the wall on the left
+    assert lengths["height"] == pytest.approx(0.4 - CELL / 4 + reach)
+
+
+def test_lengths_of_a_panel_are_no_larger_than_the_domain(tmp_path):
+    faces = dict.fromkeys(("x_min", "x_max", "z_min", "z_max"), "slip")
+    results = write_run(tmp_path, "plane-strain", {0.0: lattice((-1, 1), (0, 1))}, faces, half_size=9.0)
+    assert lengths_of(results.frames[0][1], results) == {"spread": 2.0, "height": 1.0}
 
 
 def test_a_body_off_its_plane_of_symmetry_is_cut_where_it_is(tmp_path):

@@ -29,7 +29,7 @@ MADE_OF_THE_CASE = {
     "ActiveNodes": {"faces"},
     "Averager": {"_scatter_pairs", "_gather_scalar"},
     "Relaxation": {"_treatment"},
-    "Stage": {"redistribution", "acts", "_follows", "_grid", "_radial", "_times"},
+    "Stage": {"redistribution", "acts", "_follows", "_grid", "_radial", "_times", "_downwards"},
     "EnergyBalance": {"_downwards", "_along"},
     "Recorder": {"directory"},
     "History": {"attributes", "_columns", "_axes", "_variables"},

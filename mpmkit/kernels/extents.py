@@ -1,4 +1,4 @@
-"""How far the material reaches along an axis."""
+"""How far the material reaches along an axis: no further than the domain, nor than the grid can tell."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from .compile import CHUNK, chunk_count, kernel
 
 
 @kernel()
-def extents(position, box, axes, extent, periodic):
-    """Lowest x - l and highest x + l along the first ``axes`` axes, ``(axes, 2)``, m.
+def extents(position, box, axes, extent, periodic, longest):
+    """Lowest x - l and highest x + l along the first ``axes`` axes, ``(axes, 2)``, m, in the domain.
 
-    Particles outside the domain, or not finite, are left out; where none is left, the ends are ±∞. Along a
-    periodic axis a position may be anywhere.
+    The half-size l of a box counts up to ``longest``, and what of it is beyond a face is cut off: see
+    ``solver.measures``. Particles outside the domain, or not finite, are left out; where none is left, the
+    ends are ±∞. Along a periodic axis a position may be anywhere, and nothing is cut off.
 
     Args:
         position, box: ``(n, dim)``, m.
         axes: number of axes that are looked at.
         extent: ``(dim,)``, m, upper corner of the domain; the lower one is 0.
         periodic: ``(dim,)``, whether an axis is.
+        longest: m, half-size of the longest box that counts as it is.
     """
     n, dim = position.shape
     chunks = chunk_count(n)
@@ -34,12 +36,15 @@ def extents(position, box, axes, extent, periodic):
                 inside &= ((x >= 0.0) & (x <= extent[d])) | (periodic[d] & np.isfinite(x))
             if inside:
                 for a in range(axes):
-                    ends[c, a, 0] = min(ends[c, a, 0], position[p, a] - box[p, a])
-                    ends[c, a, 1] = max(ends[c, a, 1], position[p, a] + box[p, a])
+                    half = min(box[p, a], longest)
+                    ends[c, a, 0] = min(ends[c, a, 0], position[p, a] - half)
+                    ends[c, a, 1] = max(ends[c, a, 1], position[p, a] + half)
     found = np.empty((axes, 2))
     for a in range(axes):
         low, high = np.inf, -np.inf
         for c in range(chunks):
             low, high = min(low, ends[c, a, 0]), max(high, ends[c, a, 1])
+        if not periodic[a] and low <= high:
+            low, high = max(low, 0.0), min(high, extent[a])
         found[a, 0], found[a, 1] = low, high
     return found

@@ -5,12 +5,23 @@ from __future__ import annotations
 import math
 from functools import cache
 
+import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
+from .compile import CHUNK, chunk_count, function, inline, kernel
 
 SUPPORT, PARTS = 3, 2
 """Nodes along an axis that a spline touches, and cells that a box no wider than a cell lies in."""
+
+
+@inline()
+def spline(x):
+    """First of the three nodes that the spline of a place touches, its three weights, and the distance of the
+    place from the middle node, -1/2 to 1/2. The place is given in spacings.
+    """
+    first = math.floor(x - 0.5)
+    d = x - first - 1
+    return first, 0.5 * (0.5 - d) ** 2, 0.75 - d * d, 0.5 * (0.5 + d) ** 2, d
 
 
 @kernel()
@@ -23,12 +34,7 @@ def fill_splines(x, inverse, base, weight, gradient):
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             for a in range(dim):
-                first = math.floor(x[p, a] * inverse - 0.5)
-                d = x[p, a] * inverse - first - 1  # from the middle node, -1/2 to 1/2
-                base[p, a] = first
-                weight[p, a, 0] = 0.5 * (0.5 - d) ** 2
-                weight[p, a, 1] = 0.75 - d * d
-                weight[p, a, 2] = 0.5 * (0.5 + d) ** 2
+                base[p, a], weight[p, a, 0], weight[p, a, 1], weight[p, a, 2], d = spline(x[p, a] * inverse)
                 gradient[p, a, 0] = (d - 0.5) * inverse
                 gradient[p, a, 1] = -2 * d * inverse
                 gradient[p, a, 2] = (d + 0.5) * inverse
@@ -82,3 +88,30 @@ def gather_slope(dim: int):
                     slope[p, 2] = sz
 
     return gather_slope
+
+
+@cache
+def add_sizes(dim: int):
+    """The function that adds Σ size N of particles in any order to ``sums (nodes,)``.
+
+    It goes from particle to particle without a table of weights, so that it is slower than ``scatter_pairs``
+    and takes no memory: for what is looked at now and then.
+    """
+    along, planes = dim - 1, SUPPORT if dim == 3 else 1
+
+    @function()
+    def add_sizes(x, size, inverse, lower, strides, sums):
+        weight = np.ones((3, SUPPORT))
+        for p in range(len(x)):
+            first = 0
+            for a in range(dim):
+                base, weight[a, 0], weight[a, 1], weight[a, 2], _ = spline(x[p, a] * inverse)
+                first += (base - lower[a]) * strides[a]
+            for i in range(SUPPORT):
+                for j in range(planes):
+                    w = size[p] * weight[0, i] * (weight[1, j] if dim == 3 else 1.0)
+                    row = first + i * strides[0] + j * strides[1]
+                    for k in range(SUPPORT):
+                        sums[row + k] += w * weight[along, k]
+
+    return add_sizes

@@ -101,22 +101,35 @@ def lengths_of(path: Path, results: RunResults) -> dict[str, float]:
     frame = _drawable(path, results)
     if not len(frame["position"]):
         return {}
-    low, high = frame["position"] - frame["half_size"], frame["position"] + frame["half_size"]
     (*horizontal, vertical), column = SPACES[results.case["space"]].axes, columns(results)
-    grid, diameters = results.case["grid"], []
+    diameters = []
     for axis in horizontal:
-        if grid.get("faces", {}).get(f"{axis}_min") == "periodic":
+        if results.case["grid"].get("faces", {}).get(f"{axis}_min") == "periodic":
             continue
-        lowest, highest = float(low[:, column[axis]].min()), float(high[:, column[axis]].max())
+        lowest, highest = _ends(frame, results, axis, column[axis])
         plane = 0.0 if axis == "r" else symmetry_plane(results, axis)
         diameters.append(highest - lowest if plane is None else 2 * max(highest - plane, plane - lowest))
     found = {} if not diameters else {"spread": float(np.mean(diameters))}
-    return found | {"height": float(high[:, column[vertical]].max()) - grid["domain"][vertical][0]}
+    floor = results.case["grid"]["domain"][vertical][0]
+    return found | {"height": _ends(frame, results, vertical, column[vertical])[1] - floor}
+
+
+def _ends(frame: dict[str, np.ndarray], results: RunResults, axis: str, column: int) -> tuple[float, float]:
+    """Lowest and highest place, m, that the boxes of a frame reach along an axis, within the domain."""
+    low, high = results.case["grid"]["domain"][axis]
+    position, half_size = frame["position"][:, column], frame["half_size"][:, column]
+    return max(float((position - half_size).min()), low), min(float((position + half_size).max()), high)
 
 
 def _drawable(path: Path, results: RunResults) -> dict[str, np.ndarray]:
-    """The fields of a frame that a picture needs, of the particles that can be drawn."""
+    """The fields of a frame that a picture needs, of the particles that can be drawn.
+
+    A box that is longer than a cell does not say where material is: it is drawn one cell long, as it is
+    measured.
+    """
     frame = {name: field for name, field in read_frame(path).items() if name in NEEDED}
     kept = inside(results, frame["position"]) & np.isfinite(frame["speed"])
     kept &= np.isfinite(frame["half_size"]).all(axis=1)
-    return {name: field[kept] for name, field in frame.items()}
+    frame = {name: field[kept] for name, field in frame.items()}
+    frame["half_size"] = np.minimum(frame["half_size"], results.case["grid"]["cell_size"] / 2)
+    return frame

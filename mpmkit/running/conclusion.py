@@ -9,6 +9,7 @@ from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
 from ..output.summary import UNITS, numbers, state_at_end, trusted_to_the_end
+from ..solver import density_watch
 from ..solver.simulation import Simulation
 from .provenance import plugins_used
 from .recorder import Recorder
@@ -33,6 +34,7 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     _write_summary(recorder, summary)
     _warn_of_fracture(recorder.simulation)
     _warn_of_energy(recorder.simulation)
+    _warn_of_density(recorder.simulation)
 
 
 def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -112,3 +114,8 @@ def _warn_of_energy(simulation: Simulation) -> None:
             "better; order 'usl' takes energy instead, and a shorter step makes less of it",
             100 * balance.most_excess,
         )
+
+
+def _warn_of_density(simulation: Simulation) -> None:
+    if simulation.guards.density.noted:
+        LOGGER.warning("at the end: %s", density_watch.warning(simulation, simulation.guards.density))

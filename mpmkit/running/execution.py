@@ -13,6 +13,7 @@ from ..case.plugins import cautions, plugins_of
 from ..errors import GuardStop, Interrupted, OutputError, reason
 from ..output.checkpoints import Checkpoints
 from ..registry.blame import blaming_plugins
+from ..solver.density_watch import warning
 from ..solver.simulation import Simulation
 from .conclusion import conclude, salvage
 from .interrupts import held_interrupts
@@ -134,7 +135,7 @@ def _advance(
 ) -> None:
     simulation = recorder.simulation
     told = clock.monotonic()
-    warned = False
+    warned = warned_of_density = False
     while not _over(simulation):
         if interrupted():
             raise _HeldInterrupt
@@ -148,6 +149,9 @@ def _advance(
                 "a larger sound_speed makes it less so",
                 simulation.mach_number, simulation.time,
             )  # fmt: skip
+        if simulation.guards.density.noted and not warned_of_density:
+            warned_of_density = True
+            LOGGER.warning("%s", warning(simulation, simulation.guards.density))
         now = clock.monotonic()
         if listen is not None and now - told > TOLD_EVERY:
             told = now

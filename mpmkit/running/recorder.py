@@ -28,6 +28,9 @@ COLUMNS = (
     Variable("momentum", "kg m/s", "momentum", component=True),
     Variable("max_speed", "m/s", "largest speed"),
     Variable("fractured_fraction", "1", "part of the volume in boxes longer than a cell"),
+    Variable("density_mean", "1", "nodal density over the material's, mean over the interior"),
+    Variable("density_worst", "1", "nodal density over the material's, where the interior departs most"),
+    Variable("redistribution_energy", "J", "energy put in by the redistribution"),
     Variable("time_step", "s", "time step"),
     Variable("mach_number", "1", "largest speed over the sound speed"),
 )
@@ -113,6 +116,7 @@ class Recorder:
     def _add_row(self) -> None:
         simulation, particles = self.simulation, self.simulation.particles
         values = simulation.measures(particles) | {
+            "redistribution_energy": simulation.redistribution_energy,
             "time_step": simulation.time_step,
             "mach_number": simulation.mach_number,
         }

@@ -40,11 +40,15 @@ class EnergyBalance:
 
     with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
     particles have come down by, and, along a periodic axis, which has no height, the integral of its power.
+    What a redistribution has put in, R (see ``redistribution.Stage``), is a part of what was created, and is
+    not excused: one that feeds more than the material dissipates is stopped like any other fault. It is kept
+    apart to name the cause, and ``created - redistributed`` is what the rest of the scheme has created.
     Splitting leaves part of the affine velocity to the halves: that is taken as put in. A sound speed that
     follows the flow changes at the same U, see ``solver.sound``, and is forgiven nothing.
 
     Attributes:
         solid: whether all materials are solids.
+        redistributed: R, J.
         most_excess: largest energy created so far, over the supply.
     """
 
@@ -55,7 +59,7 @@ class EnergyBalance:
         self._height = potential_energy(particles, self._downwards)
         self._time, self._power = time, self._power_along(particles)
         self._put_in = self._most_work = 0.0
-        self.created = 0.0
+        self.created = self.redistributed = 0.0
         self.solid = not any(group.law.uses_equation_of_state for group in particles.groups)
         self.most_excess = 0.0
         self._hard = False
@@ -74,14 +78,15 @@ class EnergyBalance:
         """Take its numbers back."""
         restore_plain(self, state)
 
-    def update(self, p: Particles, time: float) -> None:
-        """Take the energies of the present state."""
+    def update(self, p: Particles, time: float, redistributed: float) -> None:
+        """Take the energies of the present state, and what the redistribution has put in so far, J."""
         self.held = _held(p)
         power = self._power_along(p)
         self._put_in += (time - self._time) * (power + self._power) / 2
         self._time, self._power = time, power
         work = self._height - potential_energy(p, self._downwards) + self._put_in
         self._most_work = max(self._most_work, abs(work))
+        self.redistributed = redistributed
         self.created = self.held - self._first - work
         self.most_excess = max(self.most_excess, self.excess)
         if self.solid and not self._hard:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -77,6 +78,15 @@ class Grid:
         return self.faces[:, 0] == node_kernels.PERIODIC
 
 
+class Span(NamedTuple):
+    """The nodes that a block covers."""
+
+    lower: np.ndarray
+    """(dim,) number of its first node along each axis"""
+    shape: tuple[int, int, int]
+    """nodes along each axis"""
+
+
 @dataclass
 class Window:
     """The block of nodes that is stored: the material's bounding box with some room to move in.
@@ -113,6 +123,11 @@ class Window:
         high = np.where(grid.periodic | (high >= grid.cells - GHOST), grid.cells + GHOST, high)
         return low, high
 
+    def span(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> Span:
+        """What a block needs to cover for particles in these cells, ``(dim,)``."""
+        low, high = self.touchable(lowest_cell, highest_cell)
+        return Span(low.astype(np.int64), self._shape(low, high))
+
     def cover(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """Lay the window over the nodes that particles in these cells can touch; all are zero."""
         contacts = self._contacts()
@@ -137,11 +152,9 @@ class Window:
     def _lay(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         grid = self.grid
         self._cells = lowest_cell, highest_cell
-        low, high = self.touchable(lowest_cell, highest_cell)
-        self.lower = low.astype(np.int64)
-        self.shape = self._shape(low, high)
+        self.lower, self.shape = self.span(lowest_cell, highest_cell)
         self.strides = (self.shape[1] * self.shape[2], self.shape[2], 1)
-        self.walls = np.stack([-low, grid.cells - low], axis=1).astype(np.int64)
+        self.walls = np.stack([-self.lower, grid.cells - self.lower], axis=1)
         count = math.prod(self.shape)
         if count > self._capacity:
             self._capacity = count + count // 4
@@ -164,7 +177,7 @@ class Window:
 
     def missing(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> int:
         """Nodes that the window over these cells needs; 0 where the memory that it has is enough for it."""
-        count = math.prod(self._shape(*self.touchable(lowest_cell, highest_cell)))
+        count = math.prod(self.span(lowest_cell, highest_cell).shape)
         return count if count > self._capacity else 0
 
     def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:

@@ -12,6 +12,8 @@ from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
 from ..registry.audit import require_sentences
 from .balance import EnergyBalance
+from .density import Density
+from .density_watch import DensityWatch, cure
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import warnings
 from .view import SceneView
@@ -28,6 +30,8 @@ class Guards:
     Attributes:
         watches_energy: set it to False where something beside gravity does work, such as forces that a
             program adds to the nodes; a law that does work of its own says so itself (``passive``).
+        watches_density: set it to False to follow a flow beyond the point at which its density is wrong.
+        density: the watch over the density of the interior.
     """
 
     def __init__(self, scene: SceneView) -> None:
@@ -36,11 +40,14 @@ class Guards:
         self._longest_step = 0.0
         self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
+        self.watches_density = True
+        self.density = DensityWatch()
 
     @property
     def components(self) -> dict[str, Stateful]:
         """What has a state of its own."""
-        return {} if self.balance is None else {"balance": self.balance}
+        found: dict[str, Stateful] = {"density": self.density}
+        return found if self.balance is None else found | {"balance": self.balance}
 
     def state(self) -> State:
         """What the guards remember of the run: without it, a run that goes on would be forgiven."""
@@ -48,7 +55,7 @@ class Guards:
 
     def restore(self, state: State) -> None:
         """Take back what was remembered, for particles that are in their state already."""
-        self.balance = self._new_balance() if any("/" in name for name in state) else None
+        self.balance = self._new_balance() if any(name.startswith("balance/") for name in state) else None
         restore(self.components, state)
         restore_plain(self, state)
 
@@ -64,7 +71,10 @@ class Guards:
         return EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
 
     def check(self) -> None:
-        """Raise GuardStop if a particle is unsound, if mass got lost, or if energy came from nowhere.
+        """Raise GuardStop where the run is beyond saving.
+
+        That is: a particle is unsound, mass got lost, energy came from nowhere, or places and volumes of the
+        particles no longer say the same.
 
         Raises:
             PluginFault: mass got lost because a shape function's weights do not sum to one.
@@ -78,9 +88,12 @@ class Guards:
             stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
-            self.balance.update(p, self._scene.time)
+            self.balance.update(p, self._scene.time, self._scene.redistribution_energy)
             if self.watches_energy and self.balance.broken:
                 self._stop_of_energy(self.balance)
+        uneven = self.density.look(self._scene)
+        if uneven is not None and self.watches_density:
+            self._stop_of_density(uneven)
 
     def accept_changes(self) -> None:
         """To be called where splitting has changed energies."""
@@ -143,7 +156,22 @@ class Guards:
             f"is the fastest, {speed:.4g} m/s, and {balance.created:.4g} J have come from nowhere: "
             f"what moves and is stored is {balance.held:.4g} J, and there was {balance.supply:.4g} J to do so"
         )
-        raise _stopped(s, "energy", fastest, what, remedy(s))
+        why = remedy(s)
+        if balance.redistributed > balance.created / 2:
+            name = s.case.scheme.redistribution.name
+            put_in = f"redistribution '{name}' has put in {balance.redistributed:.4g} J"
+            why = f"{put_in}: try another one, or 'none'"
+        raise _stopped(s, "energy", fastest, what, why)
+
+    def _stop_of_density(self, found: Density) -> NoReturn:
+        s = self._scene
+        away = np.linalg.norm(s.particles.position - found.place, axis=1)
+        what = (
+            f"is where the density is worst, {found.worst:.3g} times what it should be: inside the material "
+            f"it is off by {100 * found.departure:.2g} % on average: flow, volume and height are wrong"
+        )
+        why = f"places and volumes of the particles no longer say the same; {cure(s)}"
+        raise _stopped(s, "density", int(np.nanargmin(away)), what, why)
 
 
 def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:

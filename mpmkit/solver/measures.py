@@ -10,16 +10,33 @@ import numpy as np
 
 from ..case.model import Case
 from ..kernels.extents import extents
+from .crowding import Crowding, crowding
+from .density import density_of
 from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from .grid import Grid
 from .particles import Particles
+from .surface import mean_top
+
+SAME = 0.02
+"""Cells to which the nodes tell where a surface is."""
 
 
 @dataclass(frozen=True)
 class Measures:
-    """Measures a scene. Lengths include the particle domains and what a symmetry plane has cut off, and leave
-    out particles that are not in the domain, which a guard is about to stop the run for; masses, momenta and
-    energies are of the part that is simulated.
+    """Measures a scene. Lengths are of the material in the domain, what a symmetry plane has cut off
+    included; masses, momenta and energies are of the part that is simulated.
+
+    Along each axis the material reaches from a particle as far as its box, half-size l, in two limits:
+
+        from x - min(l, Δx/2) to x + min(l, Δx/2), cut off at the faces of the domain.
+
+    *Half a cell*: a box stands for the volume around a particle while its neighbours share nodes with it.
+    The grid gives no weight to the part of a box that is beyond a cell, and nothing ties its ends to the
+    material any more (``fractured_fraction``): strain alone draws a box in a splash out to kilometres.
+    *The faces*: no material is behind a wall. Boxes of an undeformed body, of a sheet, and of a body that is
+    drawn out until a box is as long as a cell, meet end to end: their lengths are exact.
+
+    Particles that are not in the domain, which a guard is about to stop the run for, are left out.
     """
 
     case: Case
@@ -35,18 +52,21 @@ class Measures:
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
-        low = (particles.position - particles.box).min(axis=0)
-        high = (particles.position + particles.box).max(axis=0)
+        ends = extents(
+            particles.position, particles.box, grid.dim, grid.extent, grid.periodic, grid.cell_size / 2
+        )
         planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
-        middle = (low + high)[:-1] / 2
+        middle = ends[:-1].mean(axis=1)
         axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
-        return cls(case, grid, float(high[-1]), axis)
+        return cls(case, grid, float(ends[-1, 1]), axis)
 
     def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
         """All scalar measures by the names of the history's variables."""
         inside = self._inside(p)
         height = self._height(p, inside)
-        axis_height = self._height(p, inside & self._near_axis(p))
+        crowded = crowding(p, self.grid, self.case.space_.radial)
+        axis_height = self._axis_height(p, inside, crowded)
+        filled = density_of(crowded, p, self.grid, self.case.space_.radial)
         squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
         # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
@@ -64,12 +84,14 @@ class Measures:
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
             "max_speed": float(np.sqrt(squared.max())),
             "fractured_fraction": self.fractured(p),
+            "density_mean": filled.mean,
+            "density_worst": filled.worst,
         }
 
     def spread(self, p: Particles) -> float:
         """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
         grid, periodic, diameters = self.grid, self.grid.periodic, []
-        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic)
+        ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic, self._longest)
         for a, (low, high) in enumerate(ends.tolist()):
             if periodic[a] or low > high:
                 continue
@@ -85,8 +107,27 @@ class Measures:
 
     def _height(self, p: Particles, of: np.ndarray) -> float:
         """Top of the material above the grid's lower face, m; not a number where there is none."""
-        tops = (p.position[:, -1] + p.box[:, -1])[of]
-        return float(tops.max()) if len(tops) else np.nan
+        tops = (p.position[:, -1] + np.minimum(p.box[:, -1], self._longest))[of]
+        return min(float(tops.max()), float(self.grid.extent[-1])) if len(tops) else np.nan
+
+    def _axis_height(self, p: Particles, inside: np.ndarray, crowded: Crowding | None) -> float:
+        """Height of the surface by the nodes; by the boxes where the two agree, or where nodes cannot tell.
+
+        The tops of boxes are exact in a body that has kept its order. In disorder the highest of them is that
+        of a particle that lies on the others.
+        """
+        by_boxes = self._height(p, inside & self._near_axis(p))
+        if crowded is None or math.isnan(by_boxes):
+            return by_boxes
+        by_nodes = mean_top(crowded, self.axis_position, self.case.space_.radial)
+        if math.isnan(by_nodes) or abs(by_nodes - by_boxes) <= SAME * self.grid.cell_size:
+            return by_boxes
+        return min(by_nodes, float(self.grid.extent[-1]))
+
+    @property
+    def _longest(self) -> float:
+        """m, half-size of the longest box that counts as it is."""
+        return self.grid.cell_size / 2
 
     def _inside(self, p: Particles) -> np.ndarray:
         """Particles in the domain; one whose position is not finite is not."""

@@ -46,7 +46,7 @@ class SceneOperations:
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
-        self.stage = Stage(scheme, grid, particles, radial)
+        self.stage = Stage(scheme, grid, particles, radial, gravity)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False

@@ -210,6 +210,11 @@ class Simulation:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
         return self.operations.mapped_mass
 
+    @property
+    def redistribution_energy(self) -> float:
+        """Energy that redistributions have put in so far, J; see ``redistribution.Stage``."""
+        return self.operations.stage.energy
+
     def require_tables(self) -> None:
         """Raise PluginFault if the weights of the last step, if there was one, cannot be right."""
         if self.mapped_mass is not None:

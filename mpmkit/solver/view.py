@@ -47,6 +47,10 @@ class SceneView(Protocol):
     def mapped_mass(self) -> float | None:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
 
+    @property
+    def redistribution_energy(self) -> float:
+        """Energy that redistributions have put in so far, J; see ``redistribution.Stage``."""
+
     def require_tables(self) -> None:
         """Raise PluginFault if the weights of the last step cannot be right."""
 

@@ -74,6 +74,7 @@ def tank(scheme: dict, cells: int = 10, amplitude: float = 0.1, law: dict | None
 def heights(scheme: dict, settings: dict) -> Iterator[float]:
     """Of the centre of mass, eight times a period, over that of the tank at rest."""
     simulation = tank(scheme, **settings)
+    simulation.guards.watches_density = False  # how far it sinks is what is asked
     for time in np.linspace(0, PERIODS * PERIOD, ROWS):
         while simulation.time < time:
             simulation.advance()

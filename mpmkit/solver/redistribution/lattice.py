@@ -61,13 +61,7 @@ class SplineLattice:
 
     def least_around(self, nodal: np.ndarray) -> np.ndarray:
         require_field(nodal, self.block.count, "nodes")
-        least = np.pad(nodal.reshape(self.block.shape), 1)
-        for axis in range(self._dim):
-            along = np.moveaxis(least, axis, 0)
-            along[1:-1] = np.minimum(np.minimum(along[:-2], along[1:-1]), along[2:])
-        least = least[(slice(1, -1),) * self._dim].ravel()
-        self.block.fill(least)
-        return least
+        return self.block.least_around(nodal)
 
     def nearest(self, other: contract.Lattice, nodal: np.ndarray) -> np.ndarray:
         if not isinstance(other, SplineLattice):

@@ -10,7 +10,7 @@ from ...errors import PluginFault
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.vectors import LANES
 from ...registry import audit
-from ..grid import Grid, Window
+from ..grid import Grid, Span, Window
 
 PADDING = 2
 """Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
@@ -30,7 +30,7 @@ class Mirrored:
 
     Args:
         grid: its faces say what lies behind them: the image at a wall, the other end of a period.
-        window: the nodes that particles can touch.
+        window: the nodes that particles can touch, or what they span.
         times: nodes of the block a cell.
         centred: whether it holds the cells and not the nodes between them.
 
@@ -38,7 +38,7 @@ class Mirrored:
         room: size of what belongs to each node or cell, m² or m³, ``(count,)``: half of it at a wall.
     """
 
-    def __init__(self, grid: Grid, window: Window, times: int, centred: bool) -> None:
+    def __init__(self, grid: Grid, window: Window | Span, times: int, centred: bool) -> None:
         self.grid = grid
         self.spacing = grid.cell_size / times
         self.lower = window.lower * times
@@ -98,6 +98,26 @@ class Mirrored:
                     if self.grid.faces[axis, side] not in (OPEN, PERIODIC) and 0 <= wall < len(along):
                         along[wall] /= 2
         return room.ravel()
+
+    def own(self) -> np.ndarray:
+        """Which nodes or cells are in the domain, each once: no ghosts, no images, ``(count,)``."""
+        own = np.zeros(self.shape, dtype=bool)
+        ends = [
+            (max(first, 0), last + (not self._centred and self.grid.faces[axis, 1] != PERIODIC))
+            for axis, (first, last) in enumerate(self._ends)
+        ]
+        own[tuple(slice(first, max(first, end)) for first, end in ends)] = True
+        return own.ravel()
+
+    def least_around(self, values: np.ndarray) -> np.ndarray:
+        """The least of each and all its neighbours, corners included; what is not stored counts 0."""
+        least = np.pad(values.reshape(self.shape), 1)
+        for axis in range(self.grid.dim):
+            along = np.moveaxis(least, axis, 0)
+            along[1:-1] = np.minimum(np.minimum(along[:-2], along[1:-1]), along[2:])
+        least = least[(slice(1, -1),) * self.grid.dim].ravel()
+        self.fill(least)
+        return least
 
     def _ghost_planes(self) -> list[tuple[tuple, tuple]]:
         """Index of each plane behind the faces, with that of its image."""

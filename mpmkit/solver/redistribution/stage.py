@@ -12,6 +12,7 @@ from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.tensors import shear_rate
 from ...registry import audit
+from ..energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
 from ..grid import Grid, Window
 from ..particles import Particles
 from ..sorting import Sorting
@@ -39,25 +40,32 @@ class Stage:
         acts: whether the redistribution can ever be due; otherwise nothing is added up for it.
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
         time: s, since then.
+        energy: J, that all redistributions so far have put in, or taken where it is negative: the sum of the
+            changes, over each, of kinetic, strain, compressive and potential energy. Potential energy is that
+            of the history: along a periodic axis there is none.
     """
 
     nodes: contract.Lattice
     places: contract.Lattice
 
-    def __init__(self, scheme: Scheme, grid: Grid, particles: Particles, radial: bool) -> None:
+    def __init__(
+        self, scheme: Scheme, grid: Grid, particles: Particles, radial: bool, gravity: np.ndarray
+    ) -> None:
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
-        self.shear = self.time = 0.0
+        self.shear = self.time = self.energy = 0.0
         self._blocks: dict[tuple, Mirrored] = {}
+        self._downwards = np.where(grid.periodic, 0.0, gravity)
         self._follows = scheme.shape.particle_domain != "fixed"
         self._grid, self._particles, self._radial = grid, particles, radial
         self._times = max(1, round(grid.cell_size / self._typical_spacing()))
 
     def state(self) -> State:
-        return {"shear": np.array(self.shear), "time": np.array(self.time)}
+        return {name: np.array(getattr(self, name)) for name in ("shear", "time", "energy")}
 
     def restore(self, state: State) -> None:
-        self.shear, self.time = float(state["shear"]), float(state["time"])
+        self.shear, self.time, self.energy = (float(state[name]) for name in ("shear", "time", "energy"))
+        self._blocks = {}
 
     def _typical_spacing(self) -> float:
         """m, from particle to particle: that of most of them."""
@@ -101,10 +109,17 @@ class Stage:
         self._window, self._tasks = window, sorting.tasks
         self._splines = self.nodes = self._lattice(1, position, size)
         self.places = self._lattice(self._times, position, size)
+        before = self._energy_of_particles()
         author.redistribute(self, self.time)
+        self.energy += self._energy_of_particles() - before
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.time = 0.0
         return True
+
+    def _energy_of_particles(self) -> float:
+        p = self._particles
+        stored = strain_energy(p) + compressive_energy(p)
+        return kinetic_energy(p) + stored + potential_energy(p, self._downwards)
 
     def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
         return SplineLattice(self._block(times, centred=False), self._tasks, position, size)

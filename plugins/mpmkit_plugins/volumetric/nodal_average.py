@@ -1,17 +1,8 @@
 """Volumetric rate and pressure averaged over the grid: the cure of locking."""
 
-import math
-
 import numpy as np
 
-from mpmkit.contracts import GeneralisedNewtonianLaw, Operations, VolumetricTreatment, hookimpl, quantity
-
-LONG = 40.0
-"""Times √(h/g) after which fluids without a yield stress were seen to lose volume, at the earliest."""
-HOLDS_RELAXATION = 1.0
-"""E-folds a cell that hold the places of particles, where boxes are split so that they tell of crowding."""
-HOLDS_YIELD, HOLDS_VISCOSITY = 10.0, 100.0
-"""Yield stress, Pa, and viscosity, Pa s, at which none was lost (docs/stability/volumes_and_energy.md)."""
+from mpmkit.contracts import Operations, VolumetricTreatment, hookimpl, quantity
 
 
 class NodalAverage(VolumetricTreatment):
@@ -40,34 +31,11 @@ class NodalAverage(VolumetricTreatment):
         default=1.0,
     )
 
-    def cautions(self, case) -> list[str]:
-        if case.scheme.splitting and self.relaxation >= HOLDS_RELAXATION:
-            return []
-        if case.scheme.redistribution.equal_boxes:  # which holds the volume in another way
-            return []
-        free_fall = math.sqrt(case.height / (math.hypot(*case.gravity_vector) or math.inf))
-        thin = any(_is_thin(body.material.constitutive_law) for body in case.bodies)
-        if not thin or not free_fall or case.until < LONG * free_fall:
-            return []
-        return [
-            "volumetric 'nodal-average' loses volume in a fluid of little viscosity and yield stress that "
-            f"swings for longer than {LONG * free_fall:.2g} s, unless scheme.splitting is true and its "
-            f"relaxation at least {HOLDS_RELAXATION:g}, or scheme.redistribution is 'even'"
-        ]
-
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:
         return ops.average(field)
 
     def relaxation_rate(self, ops: Operations) -> float:
         return self.relaxation * ops.mean_speed / ops.cell_size
-
-
-def _is_thin(law) -> bool:
-    """Whether neither yield stress nor viscosity are known to be enough."""
-    if not law.uses_equation_of_state or getattr(law, "yield_stress", 0.0) >= HOLDS_YIELD:
-        return False
-    viscous = isinstance(law, GeneralisedNewtonianLaw)
-    return not viscous or law.viscosity_at(1.0) < HOLDS_VISCOSITY
 
 
 @hookimpl

@@ -18,15 +18,23 @@ class Own(VolumetricTreatment):
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
     def cautions(self, case) -> list[str]:
-        if "stick" not in case.grid.faces.values():
+        if not any(_meets(case, axis) for axis in case.space_.axes):
             return []
         return [
-            "volumetric 'own' locks at a stick face, where the velocity must vary within a cell; "
-            "'nodal-average' does not"
+            "volumetric 'own' locks at a stick face where material spreads or is pressed against it, so that "
+            "rows of particles in a cell come closer at different rates; 'nodal-average' does not"
         ]
 
     def average(self, ops: Operations, field: np.ndarray) -> np.ndarray:
         return field
+
+
+def _meets(case, axis) -> bool:
+    """Whether material at a stick face normal to an axis can do anything but slide along it, as in a film."""
+    faces = case.grid.faces
+    if "stick" not in (faces.get(f"{axis}_min"), faces.get(f"{axis}_max")):
+        return False
+    return any(faces.get(f"{a}_min") != "periodic" for a in case.space_.axes if a != axis)
 
 
 @hookimpl
