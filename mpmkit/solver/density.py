@@ -78,7 +78,9 @@ def density(p: Particles, grid: Grid, radial: bool) -> Density:
 
 def _in_domain(p: Particles, grid: Grid, radial: bool) -> tuple[np.ndarray, np.ndarray]:
     """Places, m, and volumes, m³, or in an axisymmetric scene areas, m², of what is in the domain."""
-    position = np.where(grid.periodic, np.mod(p.position, grid.extent), p.position)
-    inside = ((position >= 0) & (position <= grid.extent)).all(axis=1) & np.isfinite(p.volume)
-    position, size = position[inside], p.volume[inside]
+    finite = np.isfinite(p.position).all(axis=1) & np.isfinite(p.volume)
+    position, size = p.position[finite], p.volume[finite]
+    position = np.where(grid.periodic, np.mod(position, grid.extent), position)
+    inside = ((position >= 0) & (position <= grid.extent)).all(axis=1)
+    position, size = position[inside], size[inside]
     return position, size / (2 * np.pi * position[:, 0]) if radial else size
