@@ -84,8 +84,8 @@ def test_a_box_that_strain_has_drawn_out_reaches_no_further_than_half_a_cell(dra
     particles.box[:] *= [1 / drawn_out, drawn_out]
     expected = 0.4 if drawn_out == 1.0 else 0.4 - 0.025 + 0.05
     assert measures(particles)["height"] == pytest.approx(expected)
-    # The height on the axis is that of the nodes, to 0.02 cells, where the boxes say something else.
-    assert abs(measures(particles)["slump"]) <= 0.02 * 0.1
+    # The height on the axis is that of the nodes, to 0.025 cells, where the boxes say something else.
+    assert abs(measures(particles)["slump"]) <= 0.025 * 0.1
 
 
 @pytest.mark.parametrize("stretch", [0.5, 1.0, 1.6, 2.0])

@@ -41,6 +41,7 @@ NOT_COMPARED = {
     "Simulation": {"blaming"},  # plug-ins, and a function of this very simulation
     "SceneOperations": {"_tables"},  # memory that sorting uses as well; weight and gradient lie in it
     "Window": {"_stores", "_capacity"},  # memory, as much as was ever needed; nodes, pairs, average lie in it
+    "Stage": {"_blocks"},  # kept from one redistribution to the next, made anew where they are missing
     "History": {"_next_flush"},  # wall time
     "Stopwatch": {"_begin", "_before"},  # wall time; ``elapsed`` is compared
 }

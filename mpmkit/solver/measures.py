@@ -17,7 +17,7 @@ from .grid import Grid
 from .particles import Particles
 from .surface import mean_top
 
-SAME = 0.02
+SAME = 0.025
 """Cells to which the nodes tell where a surface is."""
 
 
