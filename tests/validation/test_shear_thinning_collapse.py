@@ -1,4 +1,4 @@
-"""The collapse of a column that thins in shear, n < 1, on a stick floor: later it spreads as lubrication has it.
+"""A column that thins in shear, n < 1, collapses on a stick floor and then spreads as lubrication has it.
 
 In a thin sheet tau = rho g |dh/dx| (h - z) = k γ̇^n, which gives the flux
 
@@ -31,7 +31,7 @@ DENSITY, G = 1000.0, 9.81
 WIDTH, HEIGHT = 0.4, 0.1
 AREA = WIDTH * HEIGHT
 START = 3 * math.sqrt(HEIGHT / G)
-"""s, the time at which the sheet that keeps its shape is as long as the column is wide: inertia is over then."""
+"""T0, s: then the sheet that keeps its shape is as long as the column is wide. Inertia is over soon after."""
 
 
 def beta(a: float, b: float) -> float:
@@ -41,7 +41,7 @@ def beta(a: float, b: float) -> float:
 
 @dataclass(frozen=True)
 class Sheet:
-    """The sheet that keeps its shape, of a fluid whose consistency makes it as long as the column at START."""
+    """The sheet that keeps its shape, of a fluid whose consistency makes it as long as the column at T0."""
 
     n: float
 
@@ -52,7 +52,7 @@ class Sheet:
 
     @property
     def slowness(self) -> float:
-        """k in (L'/L)^n L^(2n+3) = (A/moment(0))^(n+2) / (slowness k), divided out."""
+        """s in s k (L'/L)^n L^(2n+3) = (A/moment(0))^(n+2), by which the area is A."""
         n = self.n
         return (n + 2) / (n + 1) * ((2 * n + 1) / n) ** n / (DENSITY * G)
 
@@ -62,6 +62,7 @@ class Sheet:
 
     @property
     def consistency(self) -> float:
+        """k, from that equation at T0."""
         n = self.n
         over = (AREA / self.moment(0)) ** (n + 2) / (self.slowness * WIDTH ** (2 * n + 3))
         return over * (START / self.exponent) ** n
@@ -88,7 +89,6 @@ class Sheet:
 
 def column(sheet: Sheet, cells: int) -> mpmkit.Simulation:
     dx = HEIGHT / cells
-    consistency = {"density": DENSITY, "sound_speed": {"factor": 6}}
     return mpmkit.Simulation(
         mpmkit.parse_case(
             {
@@ -96,13 +96,15 @@ def column(sheet: Sheet, cells: int) -> mpmkit.Simulation:
                 "until": 1e3,
                 "grid": {
                     "cell_size": dx,
-                    "domain": {"x": [0.0, 40 * HEIGHT / 4], "z": [0.0, HEIGHT + 2 * dx]},
+                    "domain": {"x": [0.0, 10 * HEIGHT], "z": [0.0, HEIGHT + 2 * dx]},
                     "faces": {"z_min": "stick", "x_min": "symmetry"},
                 },
                 "bodies": [
                     {
                         "shape": {"kind": "box", "lower": [0.0, 0.0], "upper": [WIDTH, HEIGHT]},
-                        "material": herschel_bulkley(0.0, sheet.consistency, sheet.n, **consistency),
+                        "material": herschel_bulkley(
+                            0.0, sheet.consistency, sheet.n, density=DENSITY, sound_speed={"factor": 6}
+                        ),
                     }
                 ],
                 "scheme": scheme(),
