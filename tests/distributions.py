@@ -27,19 +27,16 @@ def installed_beside(distributions: list[Path], place: Path) -> dict[str, str]:
     return {**os.environ, **own}
 
 
-def pass_their_own_tests(distributions: list[Path], place: Path) -> str:
-    """What pytest said of the tests of some distributions in one folder, which must all pass."""
+def run_their_tests(distributions: list[Path], place: Path) -> subprocess.CompletedProcess[str]:
+    """pytest with the tests of some distributions in one folder; it says of each how it went."""
     environment = installed_beside(distributions, place)
     warnings = ["-W", "default::DeprecationWarning", "-W", "error::RuntimeWarning"]
     pytest = [sys.executable, *warnings, "-m", "pytest", "-v", "-p", "no:cacheprovider", "--noconftest"]
     folder = distributions[0].parent
-    done = subprocess.run(
+    return subprocess.run(
         [*pytest, f"--rootdir={folder}", *(f"{each.name}/tests" for each in distributions)],
         cwd=folder,
         env=environment,
         capture_output=True,
         text=True,
     )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "failed" not in done.stdout
-    return done.stdout
