@@ -359,7 +359,7 @@ def kill_again_and_again(tmp_path, times, seed):
             assert process.wait(300) == 0
             break
         while process.poll() is None and checkpoints.paths() == before:
-            time.sleep(0.001)
+            time.sleep(0.01)
         time.sleep(chosen.uniform(0.0, 0.1))
         process.kill()  # SIGKILL: it hears nothing of it
         process.wait()
