@@ -23,5 +23,11 @@ def each_number_of_threads(one_thread, request):
     numba.set_num_threads(request.param)
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Studies without their figures, which take longer to draw than these tests take for all else."""
+    monkeypatch.setattr("mpmkit.study.figures.draw", lambda dataset, directory: None)
+
+
 collect_ignore = ["version1"]
 """A distribution of its own, whose tests ``test_versions.py`` runs."""

@@ -383,6 +383,7 @@ def test_what_a_case_says_of_its_mesh_is_what_is_in_it(tmp_path):
     assert told[0] != told[2]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_member_of_a_study_is_run_again_if_its_mesh_has_changed(tmp_path):
     file = ball(tmp_path / "ball.stl")
     path = tmp_path / "study.json"

@@ -28,7 +28,7 @@ def unread(*arguments, here, errors=False):
         os.close(writing)
 
 
-@pytest.mark.parametrize("arguments", [["plugins"], ["schema"], ["run", "--help"]])
+@pytest.mark.parametrize("arguments", [["schema"], ["run", "--help"]])
 def test_what_is_printed_ends_with_the_status_of_the_shell(arguments, tmp_path):
     done = unread(*arguments, here=tmp_path)
     assert (done.returncode, done.stderr) == (141, "")

@@ -70,9 +70,9 @@ def assert_readable(directory: Path):
 
 
 @mounting
-@pytest.mark.parametrize("size", ["40k", "120k", "400k"])
+@pytest.mark.parametrize("size", ["120k", "400k"])
 def test_a_disk_that_fills_up(tmp_path, size):
-    """A few files of a run fit, and no more."""
+    """A few files of a run fit, and no more; where none fits is tested below, file by file."""
     place = tmp_path / "disk"
     said = one_sentence(
         on_a_disk(place, f"size={size}", *PICTURES_OFF, "--checkpoint-every", "0.1s", "--set",
@@ -100,9 +100,9 @@ def limited(size: int):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a limit of POSIX")
-@pytest.mark.parametrize("size", [3_000, 30_000, 60_000])
+@pytest.mark.parametrize("size", [3_000, 60_000])
 def test_a_quota(tmp_path, size):
-    """Too little for a frame, for the history, for a checkpoint."""
+    """Too little for a frame, and for a checkpoint; for the history, see below."""
     done = subprocess.run(
         [*RUN, *PICTURES_OFF, "--until", "1", "--out", "run", "--checkpoint-every", "0.1s"],
         cwd=tmp_path,

@@ -75,7 +75,7 @@ def run(tmp_path, **changes) -> int:
 @pytest.mark.parametrize("name", NAMES)
 def test_each_leaves_a_checkpoint(tmp_path, monkeypatch, capsys, signals, name):
     on_step(monkeypatch, 5, lambda: os.kill(os.getpid(), getattr(signal, name)))
-    assert run(tmp_path) == 130
+    assert run(tmp_path, output={"report": False}) == 130
     assert "go on with: mpmkit run --resume " in capsys.readouterr().err
     assert len(Checkpoints(tmp_path / "run/checkpoints").paths()) == 1
     monkeypatch.undo()

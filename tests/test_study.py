@@ -123,6 +123,7 @@ def test_a_list_of_members_and_those_that_fail_among_them(tmp_path):
     assert (tmp_path / "differences.png").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_has_finished_is_not_run_again_and_what_has_changed_or_failed_is(tmp_path):
     members = {"one": {}, "two": {"until": 0.01}, "gone": LEAVES, "bad": NOTHING}
     first, executor = run(tmp_path, study(members=members))
@@ -142,6 +143,7 @@ def test_what_has_finished_is_not_run_again_and_what_has_changed_or_failed_is(tm
     assert len(executor.ran) == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_another_version_runs_again(tmp_path, monkeypatch):
     given = study(members={"one": {"until": 0.002}})
     run(tmp_path, given)
@@ -159,6 +161,7 @@ def test_what_was_not_run_is_not_a_number(tmp_path):
     assert not list(tmp_path.glob("*.png"))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_threads_take_turns(tmp_path):
     """Numba's threads, NetCDF's library and the CPU's clock are of the process, not of a thread."""
     with ThreadPoolExecutor(3) as executor:
@@ -180,6 +183,7 @@ class Clumsy(Now):
         return future
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("at_once", [True, False])
 @pytest.mark.parametrize(("losses", "fate"), [(2, "finished"), (3, "failed")])
 def test_an_executor_that_breaks_is_given_members_again_but_not_for_ever(tmp_path, at_once, losses, fate):
@@ -190,6 +194,7 @@ def test_an_executor_that_breaks_is_given_members_again_but_not_for_ever(tmp_pat
     assert dataset.fate.item() == fate
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_error_on_the_way_is_the_fate_of_its_member(tmp_path):
     class Refuses(Now):
         def submit(self, work, /, *arguments, **options):
@@ -202,6 +207,7 @@ def test_an_error_on_the_way_is_the_fate_of_its_member(tmp_path):
     assert dataset.sentence.values.tolist()[0] == "KeyError: 'no such key'"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_executor_that_gives_up_leaves_its_members_to_the_next_time(tmp_path):
     """As that of a cluster whose scheduler has died."""
 
@@ -223,6 +229,7 @@ def test_an_executor_that_gives_up_leaves_its_members_to_the_next_time(tmp_path)
     assert (dataset.fate == "finished").all()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_loading_code_is_not_part_of_the_cost(tmp_path):
     """What a process does once is not the member's: the first one takes as long as the second."""
     dataset, _ = run(tmp_path, study(members={"one": {}, "two": {"scheme.order": "usl"}}))
@@ -240,6 +247,7 @@ def test_a_directory_that_holds_something_else(tmp_path, monkeypatch):
     assert status("study", "s.json", "--out", "s.json", "--quiet") == 4
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_members_are_kept_as_they_end(tmp_path):
     """Not only when all have: of a study that dies, nothing is lost."""
     given, seen = study(vary={"until": [0.001, 0.002, 0.003]}), []

@@ -265,6 +265,7 @@ def test_a_member_overrides_what_all_have():
     assert [member.case.until for member in members_of(given)] == [1.0, 2.0]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_compare(here, capsys, monkeypatch):
     """The grid of the options on the case, with the changes that all have; in one process here."""
     executor = Now()

@@ -11,6 +11,8 @@ from mpmkit.errors import CaseError
 from mpmkit.study import collect, execute, members_of
 from mpmkit.study.store import Store
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):

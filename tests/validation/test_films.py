@@ -102,7 +102,7 @@ def test_film_below_its_critical_thickness_stays(validate):
     s = height / critical
     creep = critical / m * ((1 - s) * np.log(1 - s) + s)
     fastest = 0.0
-    for _ in range(10):
+    for _ in range(3):  # 6 ms, and it creeps steadily after rho H²/(tau0 m), 0.04 ms
         flow.run(0.002)
         fastest = max(fastest, float(np.linalg.norm(flow.particles.velocity, axis=1).max()))
     free_fall = np.sqrt(2 * 9.81 * height)
@@ -136,6 +136,7 @@ def test_exact_film_on_20_degrees(validate):
     validate(f"{name}: profile, L2 error", error, below(BAND))
 
 
+@pytest.mark.slow
 def test_exact_film_on_10_degrees(validate):
     """From rest, 20 cells. The waves are fast, see ``Channel._settle``."""
     flow = exact_film(10, 0.05, 20, waves=60.0)
@@ -151,23 +152,23 @@ def test_exact_film_below_its_critical_thickness_stays(validate):
     weight, and rings: with g H/c. Waves of 200 m/s keep that below what is asked for. Once pushed it rings
     along the slope as well, elastic as it is, every 4 H/c; what counts then is how far it drifts.
     """
-    flow = exact_film(10, 0.04, 8, waves=200.0)
+    flow = exact_film(10, 0.04, 5, waves=200.0)
     free_fall = np.sqrt(2 * 9.81 * 0.04)
     fastest = 0.0
-    for _ in range(40):
-        flow.run(0.0025)
+    for _ in range(40):  # 0.02 s, in which a wave goes 50 times up and down
+        flow.run(0.0005)
         fastest = max(fastest, float(np.linalg.norm(flow.particles.velocity, axis=1).max()))
     name = "Film on 10°, 40 mm, exact yield"
     validate(f"{name}: speed over that of free fall", fastest / free_fall, below(1e-4, "at rest"))
     flow.start_with(np.full(len(flow.z), 0.01))
-    flow.run(0.1)
-    drift = abs(mean_travel(flow, 0.2)) / 0.2
+    flow.run(0.1)  # it stops after 0.08 s, slowed down by (tau0 - G H)/(rho H)
+    drift = abs(mean_travel(flow, 0.05)) / 0.05
     validate(f"{name}, pushed: drift over the speed of free fall", drift / free_fall, below(1e-4, "at rest"))
 
 
 def mean_travel(flow: Channel, seconds: float) -> float:
     """How far the film gets along the slope, m: the integral of its mean speed."""
-    steps, travelled = 500, 0.0
+    steps, travelled = 125, 0.0
     for _ in range(steps):
         flow.run(seconds / steps)
         travelled += flow.discharge() / flow.height * seconds / steps

@@ -66,8 +66,8 @@ def test_thrown_ball_flies_a_parabola(validate, scheme):
     p = simulation.particles
     start = p.position[np.argsort(p.number)].copy()
     longest = 0.0
-    while simulation.time < 0.6:
-        longest = max(longest, simulation.advance(at_most=0.6 - simulation.time))
+    while simulation.time < 0.3:
+        longest = max(longest, simulation.advance(at_most=0.3 - simulation.time))
     t = simulation.time
     off = np.abs(p.velocity - (v0 + g * t)).max() / np.linalg.norm(v0 + g * t)
     name = "Thrown ball, every scheme: particle velocity off v0 + g t, relative"
