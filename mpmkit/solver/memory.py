@@ -20,6 +20,7 @@ from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .available_memory import tightest_limit
 from .redistribution import redistributes
+from .refinement import refines
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -76,7 +77,13 @@ def bytes_per_particle(case: Case) -> int:
     dim, support = case.space_.dim, case.scheme.shape.support
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
-    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base + _redistributed(case))
+    passing = body_and_base + _redistributed(case) + _refined(case)
+    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + passing)
+
+
+def _refined(case: Case) -> int:
+    """Bytes a particle that a refinement holds for a moment: its cell, what it is sorted by, its partner."""
+    return DOUBLE * (2 * (1 + case.space_.dim) + 8) if refines(case.scheme.refinement) else 0
 
 
 def _redistributed(case: Case) -> int:
@@ -104,12 +111,12 @@ def _state_doubles(case: Case) -> int:
     with blaming_plugins(plugins_of(case)):  # they say what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
-    number_mass_volumes_pressures_rate_part = 9
+    number_mass_volumes_pressures_rate_parts = 10
     vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     return (
-        number_mass_volumes_pressures_rate_part
+        number_mass_volumes_pressures_rate_parts
         + vectors
         + affine
         + gradient_and_stress

@@ -1,0 +1,38 @@
+"""Particles that are drawn out are split, as long as there is need of them."""
+
+from mpmkit.contracts import Refinement, Refining, hookimpl
+
+LONG = 1 + 1e-9
+"""Side of a box, in cells, from which it is split: one that is longer leaves cells without a particle."""
+SOON = 0.8
+"""Side from which a box is split as well where another one is too long: arrays then grow rarely."""
+SMALLEST = 1 / 8
+"""Portion of a particle of the start that a half has at least where its cell has enough particles."""
+
+
+class Split(Refinement):
+    """A box that is longer than a cell along an axis is halved, unless there are enough small particles.
+
+    The portions of all particles add up to their number n at the start: there are never more than 8 n of an
+    eighth or more. Smaller halves only come into cells with fewer particles than a full one has at the
+    start; a thread that is drawn out and out needs them. Elsewhere the box of a particle that is too small
+    to be split is cut to a cell: what drew it out so often has mixed it with others, which fill the room.
+    """
+
+    name = "split"
+    api_version = 2
+    citation = "after Tan & Nairn, Comput. Methods Appl. Mech. Eng. 191 (2002) 2123-2137"
+
+    def refine(self, ops: Refining) -> None:
+        for axis in range(ops.dim):
+            side = ops.sides()[:, axis]
+            if side.max() > LONG:
+                large, small = ops.portion() >= 2 * SMALLEST, ops.portion() < 2 * SMALLEST
+                needed = ops.with_room((side > SOON) & small, axis)
+                ops.cut(small & ~needed, axis)
+                ops.split((side > SOON) & large | needed, axis)
+
+
+@hookimpl
+def mpmkit_refinements():
+    return [Split]
