@@ -6,6 +6,8 @@ LONG = 1 + 1e-9
 """Side of a box, in cells, from which it is split: one that is longer leaves cells without a particle."""
 SOON = 0.8
 """Side from which a box is split as well where another one is too long: arrays then grow rarely."""
+MIXED = 2.0
+"""Side from which one that finds no room is cut: its halves would lie in other cells, which are full."""
 SMALLEST = 1 / 8
 """Portion of a particle of the start that a half has at least where its cell has enough particles."""
 
@@ -16,7 +18,8 @@ class Split(Refinement):
     The portions of all particles add up to their number n at the start: there are never more than 8 n of an
     eighth or more. Smaller halves only come into cells with fewer particles than a full one has at the
     start; a thread that is drawn out and out needs them. Elsewhere the box of a particle that is too small
-    to be split is cut to a cell: what drew it out so often has mixed it with others, which fill the room.
+    to be split is cut to a cell when it is two cells long: what drew it out so often has mixed it with
+    others, which fill the room.
     """
 
     name = "split"
@@ -29,7 +32,7 @@ class Split(Refinement):
             if side.max() > LONG:
                 large, small = ops.portion() >= 2 * SMALLEST, ops.portion() < 2 * SMALLEST
                 needed = ops.with_room((side > SOON) & small, axis)
-                ops.cut(small & ~needed, axis)
+                ops.cut(small & ~needed & (side > MIXED), axis)
                 ops.split((side > SOON) & large | needed, axis)
 
 
