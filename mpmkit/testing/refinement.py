@@ -13,8 +13,8 @@ from .volumetric import OIL
 
 ROUNDS = 30
 """Times that a scene is thrown into disorder, each followed by a refinement."""
-MOST = 20
-"""Particles, over those at the start, that no flow needs."""
+MOST = 10
+"""Particles for each one at the start that no flow needs, beside two full cells for each of the domain."""
 STRETCH = 3.0
 """Largest factor of a box's side in a round."""
 SUMS = ("portion", "mass", "initial_volume", "volume")
@@ -87,15 +87,16 @@ def keeps_what_there_is(space: str, author: Refinement) -> None:
 def ends(space: str, author: Refinement) -> None:
     """However often particles are thrown into disorder and drawn out, their number comes to an end."""
     simulation = heap(space, author)
-    begun = len(simulation.particles)
+    begun, grid = len(simulation.particles), simulation.grid
+    most = MOST * begun + 2 * 2**grid.dim * int(np.prod(grid.cells))
     for turn in range(1, ROUNDS + 1):
         draw_out(simulation, turn)
         refine(simulation)
         count = len(simulation.particles)
         require(
-            count <= MOST * begun,
+            count <= most,
             f"{begun} particles became {count} as they were drawn out {turn} times; no flow needs more than "
-            f"{MOST} times as many",
+            f"{most}: {MOST} for each of them, and what fills all cells of the domain twice",
         )
 
 

@@ -1,5 +1,7 @@
 """Particles that are drawn out are split, as long as there is need of them."""
 
+import numpy as np
+
 from mpmkit.contracts import Refinement, Refining, hookimpl
 
 LONG = 1 + 1e-9
@@ -17,9 +19,10 @@ class Split(Refinement):
 
     The portions of all particles add up to their number n at the start: there are never more than 8 n of an
     eighth or more. Smaller halves only come into cells with fewer particles than a full one has at the
-    start; a thread that is drawn out and out needs them. Elsewhere the box of a particle that is too small
-    to be split is cut to a cell when it is two cells long: what drew it out so often has mixed it with
-    others, which fill the room.
+    start, and in all there are at most two full cells of them for each cell with material; a thread that is
+    drawn out and out needs them. Elsewhere the box of a particle that is too small to be
+    split is cut to a cell when it is two cells long: what drew it out so often has mixed it with others,
+    which fill the room.
     """
 
     name = "split"
@@ -31,9 +34,15 @@ class Split(Refinement):
             side = ops.sides()[:, axis]
             if side.max() > LONG:
                 large, small = ops.portion() >= 2 * SMALLEST, ops.portion() < 2 * SMALLEST
-                needed = ops.with_room((side > SOON) & small, axis)
+                needed = _affordable(ops, ops.with_room((side > SOON) & small, axis))
                 ops.cut(small & ~needed & (side > MIXED), axis)
                 ops.split((side > SOON) & large | needed, axis)
+
+
+def _affordable(ops: Refining, needed: np.ndarray) -> np.ndarray:
+    """What is needed; nothing if there were then more small ones than two full cells for each cell."""
+    small = np.count_nonzero(ops.portion() < SMALLEST) + 2 * np.count_nonzero(needed)
+    return needed & (small <= 2 * (ops.full() / ops.count()).sum())
 
 
 @hookimpl
