@@ -262,7 +262,8 @@ def test_more_that_is_known_to_fail():
     lasting, torn = [*water, "until=30"], "scheme.splitting=false"
     weak = 'scheme.volumetric={"name": "nodal-average", "relaxation": 0.1}'
     assert cautions(load_case(CASES / "slump.json", lasting)) == []
-    for change in (torn, weak):
+    merging = "scheme.refinement=split-and-merge"
+    for change in (torn, weak, merging):
         assert "loses volume" in " ".join(cautions(load_case(CASES / "slump.json", [*lasting, change])))
     even = "scheme.redistribution=even"  # keeps the volume of water, see tests/validation/test_long_shear.py
     assert cautions(load_case(CASES / "slump.json", [*lasting, torn, even])) == []

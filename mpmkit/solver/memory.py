@@ -57,7 +57,7 @@ def expected_bytes(case: Case, particles: float) -> int:
     As the material spreads, so does the window of nodes that covers it; particles take most by far.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
-    of_particles = particles * (bytes_per_particle(case) + kept)
+    of_particles = particles * (bytes_per_particle(case) + kept + _refined(case))
     return int(of_particles + window_nodes(case) * _doubles_per_node(case) * DOUBLE)
 
 
@@ -77,8 +77,7 @@ def bytes_per_particle(case: Case) -> int:
     dim, support = case.space_.dim, case.scheme.shape.support
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
-    passing = body_and_base + _redistributed(case) + _refined(case)
-    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + passing)
+    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base + _redistributed(case))
 
 
 def _refined(case: Case) -> int:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from accurate_setup import bingham
-from bands import below, between
+from bands import below
 
 import mpmkit
 
@@ -72,37 +71,3 @@ def test_a_slump_spreads_with_merging_as_without(validate, file, overrides, unti
     name = f"Merging, {file.replace('_', ' ')}, {until:g} s"
     validate(f"{name}: D(t) off that without merging", off, below(0.003, "0"))
     validate(f"{name}: particles over those at the start", most / begun, below(1.3))
-
-
-@pytest.mark.slow
-def test_water_that_swings_for_long_keeps_its_volume_and_its_particles(validate):
-    """The first wave of a tank, twenty periods. Without refinement it sinks to half of its height."""
-    length, depth, cell, gravity = 0.4, 0.2, 0.02, 9.81
-    k = math.pi / length
-    period = 2 * math.pi / math.sqrt(gravity * k * math.tanh(k * depth))
-    case = {
-        "space": "plane-strain",
-        "until": 20 * period,
-        "grid": {"cell_size": cell, "domain": {"x": [0, length], "z": [0, 2 * depth]}, "faces": TANK},
-        "bodies": [
-            {
-                "shape": {"kind": "box", "lower": [0, 0], "upper": [length, depth]},
-                "material": {
-                    "law": "newtonian",
-                    "density": 1000.0,
-                    "viscosity": 1e-3,
-                    "sound_speed": {"factor": 10},
-                },
-                "velocity": {"amplitude": [0.2, 0.0], "wave_vector": [k, 0.0]},
-            }
-        ],
-        "scheme": {"redistribution": "none", "refinement": "split-and-merge"},
-    }
-    simulation = mpmkit.Simulation(mpmkit.parse_case(case))
-    begun = len(simulation.particles)
-    most = most_particles(simulation, 20 * period)
-    p = simulation.particles
-    height = float(np.average(p.position[:, 1], weights=p.mass)) / (depth / 2)
-    name = "Water in a tank, split-and-merge, 20 periods"
-    validate(f"{name}: centre of mass over flat", height, between(0.98, 1.02))
-    validate(f"{name}: most particles over those at the start", most / begun, below(1.5))

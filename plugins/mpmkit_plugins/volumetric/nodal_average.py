@@ -41,7 +41,7 @@ class NodalAverage(VolumetricTreatment):
     )
 
     def cautions(self, case) -> list[str]:
-        if case.scheme.splitting and self.relaxation >= HOLDS_RELAXATION:
+        if case.scheme.refinement.name == "split" and self.relaxation >= HOLDS_RELAXATION:
             return []
         if case.scheme.redistribution.equal_boxes:  # which holds the volume in another way
             return []
@@ -51,7 +51,7 @@ class NodalAverage(VolumetricTreatment):
             return []
         return [
             "volumetric 'nodal-average' loses volume in a fluid of little viscosity and yield stress that "
-            f"swings for longer than {LONG * free_fall:.2g} s, unless scheme.splitting is true and its "
+            f"swings for longer than {LONG * free_fall:.2g} s, unless scheme.refinement is 'split' and its "
             f"relaxation at least {HOLDS_RELAXATION:g}, or scheme.redistribution is 'even'"
         ]
 
