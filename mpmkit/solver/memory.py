@@ -20,7 +20,6 @@ from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .available_memory import tightest_limit
 from .redistribution import redistributes
-from .refinement import refines
 from .scene import tracks_deformation
 
 DOUBLE = 8
@@ -57,7 +56,7 @@ def expected_bytes(case: Case, particles: float) -> int:
     As the material spreads, so does the window of nodes that covers it; particles take most by far.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
-    of_particles = particles * (bytes_per_particle(case) + kept + _refined(case))
+    of_particles = particles * (bytes_per_particle(case) + kept)
     return int(of_particles + window_nodes(case) * _doubles_per_node(case) * DOUBLE)
 
 
@@ -78,11 +77,6 @@ def bytes_per_particle(case: Case) -> int:
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
     return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base + _redistributed(case))
-
-
-def _refined(case: Case) -> int:
-    """Bytes a particle that a refinement holds for a moment: its cell, what it is sorted by, its partner."""
-    return DOUBLE * (2 * (1 + case.space_.dim) + 8) if refines(case.scheme.refinement) else 0
 
 
 def _redistributed(case: Case) -> int:
