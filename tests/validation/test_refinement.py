@@ -50,7 +50,7 @@ def test_what_is_let_go_in_a_tank_is_not_split_without_end(validate):
 @pytest.mark.parametrize(
     ("file", "overrides", "until"),
     [
-        ("slump", ["grid.cell_size=0.01", "grid.domain.z=[0, 0.31]"], 1.0),
+        ("slump", ["grid.cell_size=0.01", "grid.domain.z=[0, 0.31]"], 0.6),
         pytest.param(
             "slump_quarter", ["grid.cell_size=0.02", "grid.domain.z=[0, 0.32]"], 2.0, marks=pytest.mark.slow
         ),
