@@ -468,7 +468,7 @@ def test_the_schema_has_units_descriptions_and_every_plugin():
     assert Place(schema, {}, ["until"]).unit == "s"
     assert Place(schema, GOOD, ["bodies", 0, "material", "yield_stress"]).unit == "Pa"
     assert Place(schema, {}, ["grid", "cell_size"]).unit == "m"
-    for kind in ("shape", "order", "velocity", "volumetric", "redistribution"):
+    for kind in ("shape", "order", "velocity", "volumetric", "redistribution", "refinement"):
         place = Place(schema, {}, ["scheme", kind])
         names = list(installed().of_kind(kind))
         assert sorted(place.choices()) == names  # the shorthand, for completion

@@ -117,7 +117,7 @@ def test_what_exists_is_left_alone(what, tmp_path, capsys):
 
 def test_an_unknown_kind_is_refused(tmp_path, capsys):
     assert new_plugin("my-own", "--kind", "pump", "--out", tmp_path / "new") == 2
-    kinds = "'law', 'shape', 'order', 'velocity', 'volumetric', 'redistribution', 'equation_of_state'"
+    kinds = ", ".join(f"'{kind}'" for kind in KINDS)
     assert kinds in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 

@@ -291,7 +291,7 @@ def test_few_particles_in_three_dimensions_are_a_warning():
     [
         (
             {"splitting": True},
-            "scheme.splitting is true, but scheme.redistribution 'even' keeps boxes of fluids of equal sides",
+            "scheme.refinement is 'split', but scheme.redistribution 'even' keeps boxes of fluids",
         ),
         (
             {"shape": {"name": "cpgimp", "domain": "stretch"}},

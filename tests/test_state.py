@@ -30,6 +30,7 @@ MADE_OF_THE_CASE = {
     "Averager": {"_scatter_pairs", "_gather_scalar"},
     "Relaxation": {"_treatment"},
     "Stage": {"redistribution", "acts", "_follows", "_grid", "_radial", "_times", "_downwards"},
+    "Refiner": {"dim", "acts", "_author", "_grid", "_radial", "_full"},
     "EnergyBalance": {"_downwards", "_along"},
     "Recorder": {"directory"},
     "History": {"attributes", "_columns", "_axes", "_variables"},

@@ -90,6 +90,7 @@ def case_model(registry: Registry) -> type[Case]:
         velocity=_choice(registry.of_kind("velocity"), "apic"),
         volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
         redistribution=_choice(registry.of_kind("redistribution"), "even"),
+        refinement=_choice(registry.of_kind("refinement"), "none"),
     )
     model = create_model(
         "Case",

@@ -60,7 +60,8 @@ def _needless(case: Case) -> Iterator[str]:
     fluids = [body for body in case.bodies if body.material.constitutive_law.uses_equation_of_state]
     kept = f"scheme.redistribution '{scheme.redistribution.name}' keeps boxes of fluids of equal sides"
     if scheme.splitting and fluids:
-        yield f"scheme.splitting is true, but {kept}, which are hardly ever longer than a cell"
+        name = scheme.refinement.name
+        yield f"scheme.refinement is '{name}', but {kept}, which are hardly ever longer than a cell"
     if scheme.shape.particle_domain == "stretch" and fluids:
         yield f"{kept}: the domain 'stretch' of scheme.shape '{scheme.shape.name}' acts on solids only"
 

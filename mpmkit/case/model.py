@@ -10,11 +10,12 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from ..contracts import ConstitutiveLaw, EquationOfState, quantity
 from ..contracts.order import UpdateOrder
 from ..contracts.redistribution import Redistribution
+from ..contracts.refinement import Refinement
 from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
@@ -134,10 +135,31 @@ class Scheme(Model):
     velocity: VelocityUpdate
     volumetric: VolumetricTreatment
     redistribution: Redistribution
+    refinement: Refinement
     splitting: bool = Field(
-        default=False, description="whether particles whose box is drawn longer than a cell are split in two"
+        default=False,
+        description="whether particles that are drawn out are split: true alone is short for the refinement "
+        "'split'",
     )
     time_step: TimeStep = TimeStep()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _splitting_says_whether(cls, data: Any) -> Any:
+        """``splitting`` says whether particles are split, ``refinement`` how."""
+        if not isinstance(data, dict) or not isinstance(data.get("splitting", False), bool):
+            return data
+        if "refinement" not in data:
+            return data | ({"refinement": "split"} if data.get("splitting") else {})
+        chosen = data["refinement"]
+        name = chosen.get("name") if isinstance(chosen, dict) else getattr(chosen, "name", chosen)
+        splits = name != "none"
+        if data.get("splitting", splits) != splits:
+            raise ValueError(
+                f"splitting is {str(data['splitting']).lower()} and refinement is "
+                f"{name!r}, which contradict each other; leave out splitting"
+            )
+        return data | {"splitting": splits}
 
 
 class Case(Model):

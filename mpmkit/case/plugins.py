@@ -8,7 +8,7 @@ from ..registry.audit import require_sentences
 from ..registry.blame import blaming_plugins
 from .model import Case
 
-SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution")
+SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution", "refinement")
 """Kinds of plug-ins that a scheme is made of."""
 
 

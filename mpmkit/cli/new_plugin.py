@@ -9,14 +9,23 @@ import click
 from .paths import PATH
 from .printing import echo
 
+KINDS = [
+    "law",
+    "shape",
+    "order",
+    "velocity",
+    "volumetric",
+    "redistribution",
+    "refinement",
+    "equation_of_state",
+]
+
 
 @click.command("new-plugin")
 @click.argument("name")
 @click.option(
     "--kind",
-    type=click.Choice(
-        ["law", "shape", "order", "velocity", "volumetric", "redistribution", "equation_of_state"]
-    ),
+    type=click.Choice(KINDS),
     required=True,
     help="What the plug-in is.",
 )

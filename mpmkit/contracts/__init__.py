@@ -11,6 +11,7 @@ from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
+from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -33,6 +34,8 @@ __all__ = [
     "Plugin",
     "Redistributing",
     "Redistribution",
+    "Refinement",
+    "Refining",
     "ShapeFunction",
     "StateVariable",
     "UpdateOrder",

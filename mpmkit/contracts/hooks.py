@@ -14,6 +14,7 @@ from .equation_of_state import EquationOfState
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
 from .redistribution import Redistribution
+from .refinement import Refinement
 from .shape import ShapeFunction
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -58,6 +59,11 @@ def mpmkit_redistributions() -> Iterable[type[Redistribution]]:  # type: ignore[
     """Redistributions of this module."""
 
 
+@hookspec
+def mpmkit_refinements() -> Iterable[type[Refinement]]:  # type: ignore[empty-body]
+    """Refinements of this module."""
+
+
 KINDS: dict[str, tuple[str, type]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
@@ -65,6 +71,7 @@ KINDS: dict[str, tuple[str, type]] = {
     "law": ("mpmkit_laws", ConstitutiveLaw),
     "volumetric": ("mpmkit_volumetric_treatments", VolumetricTreatment),
     "redistribution": ("mpmkit_redistributions", Redistribution),
+    "refinement": ("mpmkit_refinements", Refinement),
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
 }
 """Kind of plug-in: its hook and its contract."""

@@ -24,6 +24,7 @@ KINDS = {
     "velocity": "velocity update",
     "volumetric": "volumetric treatment",
     "redistribution": "redistribution",
+    "refinement": "refinement",
     "equation_of_state": "equation of state",
 }
 """Kinds of plug-ins that there are templates for, and what they are called."""

@@ -98,10 +98,10 @@ def _write_summary(recorder: Recorder, summary: dict[str, Any]) -> None:
 
 def _warn_of_fracture(simulation: Simulation) -> None:
     fractured = simulation.measures.fractured(simulation.particles)
-    if fractured > FRACTURED and not simulation.case.scheme.splitting:
+    if fractured > FRACTURED and not simulation.refiner.acts:
         LOGGER.warning(
             "at the end %.0f %% of the volume is in particles that are drawn apart further than a cell "
-            "(fractured_fraction): set scheme.splitting to true",
+            "(fractured_fraction): set scheme.refinement to 'split-and-merge'",
             100 * fractured,
         )
 

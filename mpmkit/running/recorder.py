@@ -120,9 +120,8 @@ class Recorder:
             "time_step": simulation.time_step,
             "mach_number": simulation.mach_number,
         }
-        by_number = np.argsort(particles.number)
         kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
-        fields = {name: field[by_number] for name, field in kept.items()}
+        fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
         if self.directory is not None:
@@ -134,3 +133,12 @@ class Recorder:
         position = particles.position + simulation.grid.lower
         self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
         self._last_frame = simulation.steps
+
+
+def _by_number(field: np.ndarray, number: np.ndarray) -> np.ndarray:
+    """A field with a row for every number up to the largest; not a number where a particle is no more."""
+    if len(number) == number.max() + 1:
+        return field[np.argsort(number)]
+    found = np.full((int(number.max()) + 1, *field.shape[1:]), np.nan)
+    found[number] = field
+    return found

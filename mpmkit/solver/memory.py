@@ -104,12 +104,12 @@ def _state_doubles(case: Case) -> int:
     with blaming_plugins(plugins_of(case)):  # they say what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
-    number_mass_volumes_pressures_rate_part = 9
+    number_mass_volumes_pressures_rate_parts = 10
     vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     return (
-        number_mass_volumes_pressures_rate_part
+        number_mass_volumes_pressures_rate_parts
         + vectors
         + affine
         + gradient_and_stress

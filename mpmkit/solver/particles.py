@@ -1,4 +1,4 @@
-"""The particles: a structure of arrays, in groups of one material. Splitting alone replaces the arrays."""
+"""The particles: a structure of arrays, in groups of one material. Refinement alone replaces the arrays."""
 
 from __future__ import annotations
 
@@ -100,7 +100,11 @@ class Particles:
     quadrature: np.ndarray
     """(n,) part of its volume with which a particle enters the internal force"""
     deformation_gradient: np.ndarray | None
+    portion: np.ndarray
+    """(n,) of a particle of the start: one at first, a half for each half, the sum where two are merged"""
     groups: list[Group] = field(default_factory=list)
+    numbers_given: int = 0
+    """Numbers that were given out so far; none is given twice, though particles may be gone"""
 
     def __len__(self) -> int:
         return len(self.number)
@@ -135,6 +139,7 @@ class Particles:
 
     def take(self, index: np.ndarray) -> None:
         """Replace every array by its entries at ``index``, which must leave each group in its own part."""
+        self._count_numbers()
         parts = [np.searchsorted(index, [group.part.start, group.part.stop]) for group in self.groups]
         for name, array in self.arrays().items():
             setattr(self, name, array[index])
@@ -142,6 +147,16 @@ class Particles:
             local = index[start:stop] - group.part.start
             group.state = {name: array[local] for name, array in group.state.items()}
             group.part = slice(int(start), int(stop))
+
+    def new_numbers(self, count: int) -> np.ndarray:
+        """Numbers that no particle has, nor ever had."""
+        self._count_numbers()
+        first = self.numbers_given
+        self.numbers_given += count
+        return np.arange(first, first + count)
+
+    def _count_numbers(self) -> None:
+        self.numbers_given = max(self.numbers_given, int(self.number.max(initial=-1)) + 1)
 
     def reorder(self, order: np.ndarray, scratch: np.ndarray) -> None:
         """Put the particles into a new order, which must leave each group in its own part.

@@ -70,6 +70,7 @@ def make_particles(case: Case) -> Particles:
         mapped_pressure=np.zeros(n),
         quadrature=np.ones(n),
         deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
+        portion=np.ones(n),
     )
     start = 0
     for material in materials:

@@ -16,11 +16,12 @@ from .guards import Guards, stop
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
+from .refinement import Refiner
 from .rest import put_under_weight, swinging
 from .scene import make_particles
 from .sorting import Scattered
 from .sound import follow_flow, mach_number
-from .splitting import OutOfMemory, split
+from .splitting import OutOfMemory
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import Limits, choose_step, limits, warnings
 
@@ -69,6 +70,7 @@ class Simulation:
         self.operations = SceneOperations(
             case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
         )
+        self.refiner = Refiner(case, self.grid, self.particles)
         self.measures = Measures.of(case, self.grid, self.particles)
         self.limits: Limits
         self.time_step: float
@@ -148,7 +150,7 @@ class Simulation:
             return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def prepare(self) -> None:
-        """Every few steps, look at the guards, split, and choose the step; ``advance`` begins with it.
+        """Every few steps, look at the guards, refine, and choose the step; ``advance`` begins with it.
 
         Whoever wants to know the length of the next step beforehand calls it first: it looks once a step.
 
@@ -159,8 +161,7 @@ class Simulation:
         if self.steps % self._interval == 0 and self.steps > self._prepared:
             self._prepared = self.steps
             self.check()
-            if self.case.scheme.splitting and self._split():
-                self.guards.accept_changes()
+            self._refine()
             self._follow_flow()
             self.choose_time_step()
 
@@ -195,15 +196,16 @@ class Simulation:
         gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
         follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
 
-    def _split(self) -> bool:
-        """Split particles whose boxes are too long; whether there were any."""
+    def _refine(self) -> None:
+        """Let the refinement split and merge particles."""
         try:
-            found = split(self.particles, self.grid, self.case.space_.radial)
+            with self.blaming:
+                changed = self.refiner.refine()
         except OutOfMemory as error:
             stop(self, error.particle, drawn_out=True)
-        if found:
+        if changed:
             self.operations.allocate()
-        return found
+            self.guards.accept_changes()
 
     @property
     def mapped_mass(self) -> float | None:

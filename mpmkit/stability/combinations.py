@@ -41,4 +41,5 @@ def combinations(data: dict[str, Any], chosen: dict[str, list[str]]) -> Iterator
                 body["material"], _ = with_law(body["material"], labels["law"], installed())
         overrides = [f"scheme.{kind}={name}" for kind, name in labels.items() if kind != "law"]
         title = ", ".join(labels.values())
-        yield labels, parse_case(made, [*overrides, "scheme.splitting=false"], source=title or "the case")
+        overrides += ["scheme.splitting=false", "scheme.refinement=none"]
+        yield labels, parse_case(made, overrides, source=title or "the case")

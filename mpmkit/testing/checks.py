@@ -13,6 +13,7 @@ from ..contracts import (
     Operations,
     Plugin,
     Redistribution,
+    Refinement,
     ShapeFunction,
     UpdateOrder,
     VelocityUpdate,
@@ -27,6 +28,7 @@ from . import (
     laws,
     radial,
     redistribution,
+    refinement,
     shapes,
     volumetric,
 )
@@ -78,6 +80,12 @@ ON_REDISTRIBUTIONS = (
     redistribution.mass_and_momentum,
     redistribution.disorder_decays,
     redistribution.repeatable,
+)
+ON_REFINEMENTS = (
+    refinement.as_they_begin,
+    refinement.keeps_what_there_is,
+    refinement.ends,
+    refinement.repeatable,
 )
 ON_EQUATIONS_OF_STATE = (
     equations_of_state.arrays,
@@ -153,6 +161,11 @@ def redistribution_checks(author: Redistribution) -> list[Check]:
     """What every redistribution must do, in each space, with the default schemes."""
     due = ("is_due", partial(redistribution.is_due, author))
     return _of("redistribution", author, [due, *_in_each_space(ON_REDISTRIBUTIONS, author)])
+
+
+def refinement_checks(author: Refinement) -> list[Check]:
+    """What every refinement must do, in each space, with the default schemes."""
+    return _of("refinement", author, _in_each_space(ON_REFINEMENTS, author))
 
 
 def equation_of_state_checks(state: EquationOfState) -> list[Check]:

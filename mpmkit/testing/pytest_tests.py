@@ -8,6 +8,7 @@ from ..contracts import (
     ConstitutiveLaw,
     EquationOfState,
     Redistribution,
+    Refinement,
     ShapeFunction,
     UpdateOrder,
     VelocityUpdate,
@@ -19,6 +20,7 @@ from .checks import (
     law_checks,
     order_checks,
     redistribution_checks,
+    refinement_checks,
     shape_checks,
     velocity_checks,
     volumetric_checks,
@@ -104,6 +106,14 @@ def redistribution_tests(author: Redistribution) -> Test:
     Even particles stay, nothing happens without shear, mass and momentum are kept, disorder does not grow.
     """
     return _tests(redistribution_checks(author))
+
+
+def refinement_tests(author: Refinement) -> Test:
+    """A test function, as that of ``law_tests``, for a refinement.
+
+    Particles as they begin are left alone, what there is of mass and momentum is kept, their number ends.
+    """
+    return _tests(refinement_checks(author))
 
 
 def equation_of_state_tests(state: EquationOfState) -> Test:

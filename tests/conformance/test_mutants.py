@@ -8,6 +8,7 @@ import numpy as np
 import order_mutants
 import pytest
 import redistribution_mutants
+import refinement_mutants
 import shape_mutants
 import velocity_mutants
 import volumetric_mutants
@@ -21,6 +22,7 @@ from mpmkit.testing import (
     law_tests,
     order_checks,
     redistribution_checks,
+    refinement_checks,
     shape_checks,
     velocity_checks,
     volumetric_checks,
@@ -175,6 +177,7 @@ CHECKS = {
     "velocity": velocity_checks,
     "volumetric": volumetric_checks,
     "redistribution": redistribution_checks,
+    "refinement": refinement_checks,
     "equation_of_state": equation_of_state_checks,
 }
 OTHER_MUTANTS = [
@@ -203,6 +206,16 @@ OTHER_MUTANTS = [
     ("redistribution", redistribution_mutants.NoNumber, "disorder decays axisymmetric"),
     ("redistribution", redistribution_mutants.OneTooFew, "mass and momentum plane-strain"),
     ("redistribution", redistribution_mutants.WholeNumbers, "mass and momentum 3d"),
+    ("refinement", refinement_mutants.Endless, "ends plane-strain"),
+    ("refinement", refinement_mutants.Everything, "as they begin 3d"),
+    ("refinement", refinement_mutants.CutsAll, "as they begin axisymmetric"),
+    ("refinement", refinement_mutants.ByChance, "repeatable plane-strain"),
+    ("refinement", refinement_mutants.OneTooFew, "as they begin plane-strain"),
+    ("refinement", refinement_mutants.Rows, "keeps what there is axisymmetric"),
+    ("refinement", refinement_mutants.NoSuchAxis, "keeps what there is 3d"),
+    ("refinement", refinement_mutants.WithItself, "keeps what there is plane-strain"),
+    ("refinement", refinement_mutants.Decimals, "keeps what there is plane-strain"),
+    ("refinement", refinement_mutants.Beyond, "keeps what there is plane-strain"),
     ("equation_of_state", equation_of_state_mutants.WrongSign, "resists compression"),
     ("equation_of_state", equation_of_state_mutants.WrongSign, "energy gives the pressure"),
     ("equation_of_state", equation_of_state_mutants.TwiceAsStiff, "sound speed"),
@@ -221,6 +234,8 @@ OTHER_MUTANTS = [
         ("velocity", velocity_mutants.Undamped),
         ("volumetric", volumetric_mutants.Half),
         ("redistribution", redistribution_mutants.Spread),
+        ("refinement", refinement_mutants.Halves),
+        ("refinement", refinement_mutants.Joins),
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
     ],
 )

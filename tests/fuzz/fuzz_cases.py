@@ -122,7 +122,7 @@ def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
                 st.sampled_from([1, 2 ** len(axes), [2] * len(axes), [1, 2, 3][: len(axes)]])
             )
     scheme = {k: draw(plugins(k)) for k in SCHEME if draw(st.booleans())}
-    if draw(st.booleans()):
+    if "refinement" not in scheme and draw(st.booleans()):
         scheme["splitting"] = draw(st.booleans())
     if draw(st.booleans()):
         scheme["time_step"] = {"fraction": draw(st.sampled_from([0.1, 0.4, 0.5]))}

@@ -10,7 +10,6 @@ import pytest
 from bands import above, below, close_to
 
 import mpmkit
-from mpmkit.solver.splitting import split
 
 pytestmark = pytest.mark.section(3)
 CASES = Path(__file__).parents[2] / "cases"
@@ -93,7 +92,7 @@ def test_splitting_keeps_what_there_is(validate, space, velocity):
                         },
                     }
                 ],
-                "scheme": {"velocity": velocity},
+                "scheme": {"velocity": velocity, "refinement": "split"},
             }
         )
     )  # fmt: skip
@@ -112,7 +111,7 @@ def test_splitting_keeps_what_there_is(validate, space, velocity):
         return np.concatenate([[p.mass.sum(), p.initial_volume.sum()], p.mass @ p.velocity, moments])
 
     start, stress = totals(), p.volume @ p.stress
-    assert split(p, simulation.grid, space == "axisymmetric")
+    assert simulation.refiner.refine()
     assert len(p) > 1.3 * before
     assert (p.box <= 0.05 * (1 + 1e-9)).all()
     off = float(np.abs(totals() / start - 1).max())
@@ -145,12 +144,13 @@ def test_halves_across_a_periodic_face():
                         "material": {"law": "newtonian", "viscosity": 1, "density": 1000, "sound_speed": 20},
                     }
                 ],
+                "scheme": {"refinement": "split"},
             }
         )
     )
     p = simulation.particles
     p.box[0, 0], p.position[0, 0] = 0.06, -0.002  # on its way to be wrapped
-    assert split(p, simulation.grid, False)
+    assert simulation.refiner.refine()
     halves = np.flatnonzero(np.isclose(p.box[:, 0], 0.03))
     assert p.position[halves, 0] == pytest.approx([-0.032, 0.028])
     simulation.operations.allocate()

@@ -1,0 +1,69 @@
+"""Contract of a refinement: which particles are split, and which are merged."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from .base import Plugin
+
+
+class Refining(Protocol):
+    """What a refinement works on. Arrays have an entry a particle, ``(n,)``, as the particles are now.
+
+    After ``split`` and ``merge`` there are other particles: arrays from before do not fit them any more.
+    """
+
+    dim: int
+
+    def sides(self) -> np.ndarray:
+        """Sides of the boxes along each axis, in cells, ``(n, dim)``."""
+
+    def portion(self) -> np.ndarray:
+        """How much of a particle of the start each is: one at first, half of its parent's for a half, the sum
+        where two are merged. Over all particles it always adds up to their number at the start."""
+
+    def count(self) -> np.ndarray:
+        """Particles of the same material in the cell of each."""
+
+    def full(self) -> np.ndarray:
+        """Particles that a full cell of its body has at the start."""
+
+    def with_room(self, which: np.ndarray, axis: int) -> np.ndarray:
+        """Of the particles ``which`` (True or False), those whose halves find room; True or False.
+
+        One half comes into the next cell along the axis, or both stay in their own. There is room as long as
+        that cell has fewer particles of the material than a full one at the start; longest boxes come first.
+        """
+
+    def nearest_pairs(self, largest: float) -> np.ndarray:
+        """Pairs to be merged, ``(m, 2)`` numbers of rows, nearest first; empty where there are none.
+
+        In each cell with more particles of a material than a full cell at the start, as many pairs as there
+        are too many. The two are of the same fluid and body, each is the nearest to the other, and their
+        portions add up to ``largest`` at most.
+        """
+
+    def split(self, which: np.ndarray, axis: int) -> None:
+        """Halve the boxes of particles ``which`` (True or False) along an axis; each half is a particle."""
+
+    def cut(self, which: np.ndarray, axis: int) -> None:
+        """Shorten the boxes of particles ``which`` (True or False) along an axis to the side of a cell."""
+
+    def merge(self, pairs: np.ndarray) -> None:
+        """Make one particle of each pair, ``(m, 2)`` numbers of rows, each row at most once.
+
+        The two must be of the same body, and of a fluid.
+        """
+
+
+class Refinement(Plugin):
+    """How the number of particles follows the material as it is drawn out and thrown together.
+
+    Whatever it chooses, the framework carries it out: mass, volume, momentum and centre of mass are kept.
+    """
+
+    def refine(self, ops: Refining) -> None:
+        """Split, cut and merge what is to be; called every few steps. By default nothing ever is."""
+        return

@@ -1,0 +1,16 @@
+"""No refinement: as many particles at the end as at the start."""
+
+from mpmkit.contracts import Refinement, hookimpl
+
+
+class NoRefinement(Refinement):
+    """The scheme as published: a particle stays one, however far it is drawn out."""
+
+    name = "none"
+    api_version = 2
+    citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
+
+
+@hookimpl
+def mpmkit_refinements():
+    return [NoRefinement]
