@@ -37,7 +37,7 @@ def filled(space, wall="slip", per_axis=2, **scheme):
                 "material": {"law": "newtonian", "viscosity": 0.0, "density": 1000.0, "sound_speed": 10.0},
             }
         ],
-        "scheme": scheme,
+        "scheme": {"redistribution": "none"} | scheme,
     }
     simulation = mpmkit.Simulation(mpmkit.parse_case(case))
     simulation.operations.begin()
