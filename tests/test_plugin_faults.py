@@ -49,7 +49,7 @@ def simulation(kind, plugin):
     elif kind == "equation_of_state":
         case["bodies"][0]["material"]["equation_of_state"] = plugin.name
     else:
-        case["scheme"] = {kind: plugin.name}
+        case["scheme"] = {"redistribution": "none"} | {kind: plugin.name}
     return mpmkit.Simulation(mpmkit.parse_case(json.loads(json.dumps(case)), registry=registry))
 
 

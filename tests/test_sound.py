@@ -11,6 +11,7 @@ import pytest
 
 import mpmkit
 from mpmkit.case import parse_case
+from mpmkit.case.plugins import cautions
 from mpmkit.errors import CaseError
 from mpmkit.solver.energies import compressive_energy, kinetic_energy
 from mpmkit.solver.simulation import Simulation
@@ -97,13 +98,27 @@ def test_a_sound_that_follows_the_flow_creates_no_energy_at_an_impact(mach, sche
 
     1 % is the order's own: as much as with a sound speed that does not change.
     """
-    simulation = Simulation(thrown({"mach": mach}, scheme))
+    simulation = Simulation(thrown({"mach": mach}, scheme | {"redistribution": "none"}))
+    simulation.guards.watches_density = False  # FLIP leaves it 20 % off at the end of the tube
     p = simulation.particles
     first = kinetic_energy(p)
     while simulation.time < 0.9:
         simulation.advance()
         assert kinetic_energy(p) + compressive_energy(p) <= 1.01 * first
     assert 0.3 < float(p.mass @ p.velocity[:, 1] / p.mass.sum()) < 1.0  # it is on its way back
+
+
+def test_the_default_creates_little_energy_at_an_impact_and_says_where_it_creates_more():
+    """It shifts volume, place and weight at a stroke: 4.5 % are made of an inviscid fluid at Mach 0.1."""
+    simulation = Simulation(thrown({"mach": 0.1}, {}))
+    p, first, most = simulation.particles, kinetic_energy(simulation.particles), 0.0
+    assert cautions(simulation.case) == []
+    while simulation.time < 0.9:
+        simulation.advance()
+        most = max(most, (kinetic_energy(p) + compressive_energy(p)) / first)
+    assert most < 1.05
+    (said,) = cautions(thrown({"mach": 0.1}, {"velocity": "flip"}))
+    assert "feeds the sound" in said
 
 
 def test_another_sound_speed_is_taken_at_the_same_energy_and_slowly():
