@@ -57,7 +57,8 @@ def draw_profile(validate, flow: Channel, figure: str, title: str) -> None:
     chart.points("mpmkit, 10 cells across the half gap", flow.speed, flow.z)
 
 
-@pytest.mark.parametrize("order", ["usl", pytest.param("usf", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("order", ["usl", "usf"])
 def test_unit_bingham_from_rest(validate, order):
     m = UNIT.exponent(1.0, 1.0, excess=0.006)
     flow = Channel(UNIT, 1.0, 1.0, m=m, order=order)
