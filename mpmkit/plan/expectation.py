@@ -32,18 +32,16 @@ def expected_error(case: Case) -> float | None:
 
     None if a key of the case differs from the study's base case that is no axis of the study, or if the study
     has no such value on an axis. Cells count by how many the scene is high, finer ones than the study's as
-    its finest. In 3-D the study has its coarsest cells alone, and finer cells have the error of the body of
-    revolution, which agrees with it to a tenth of a per cent (docs/performance.md).
+    its finest, which in 3-D are 20 mm with 8 particles a cell.
     """
     dim = case.space_.dim
     cells = case.height / case.grid.cell_size * (1 + 1e-6)
-    of_errors = 2 if dim == 3 and cells >= 30 else dim
-    known = [int(r["cells"]) for r in _rows() if int(r["dim"]) == of_errors and int(r["cells"]) <= cells]
+    known = [int(r["cells"]) for r in _rows() if int(r["dim"]) == dim and int(r["cells"]) <= cells]
     place = {kind: getattr(case.scheme, kind).name for kind in SCHEMES}
     place |= {"law": _law(case), "sound": _sound(case)}
     if not known or not _is_member(case, place):
         return None
-    wanted = {"dim": str(of_errors), "cells": str(max(known)), **place}
+    wanted = {"dim": str(dim), "cells": str(max(known)), **place}
     for row in _rows():
         if all(row[key] == value for key, value in wanted.items()):
             return float(row["error"]) if row["error"] else None

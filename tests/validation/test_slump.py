@@ -141,7 +141,7 @@ def test_quarter_at_5_mm(validate):
 
 
 def test_quarter_model_agrees_with_axisymmetric(validate):
-    """Two spaces, two sets of kernels, one body: 10 mm, while it falls, when 8 particles a cell are enough."""
+    """Two spaces, two sets of kernels, one body: 10 mm; 8 particles a cell are enough while it falls."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=0.2)
     few = ["bodies.0.particles_per_cell=8"]
     quarter = Slump(mpmkit.load_case(ROOT / "cases/slump_quarter.json", few), until=0.2)
