@@ -56,7 +56,7 @@ FILMS = {
     "mortar, 30°, 7 cells": (MORTAR, 30.0, 7, 30.0),
     "concrete, 20°": (CONCRETE, 20.0, 4, 20.0),
     "Newtonian, 20°": (SYRUP, 20.0, 4, 30.0),
-    "grease, 90°": (GREASE, 90.0, 4, 4.0),
+    "grease, 90°": (GREASE, 90.0, 4, 10.0),
 }
 """Fluid, slope, cells of the period, and the time at the end, s."""
 
