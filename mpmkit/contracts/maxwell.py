@@ -103,7 +103,7 @@ def warnings_of_delay(
         until: time of the run, s.
     """
     rate, stress = scale.flow(viscous_stress, density)
-    if not stress > 0 or sound_speed is None:
+    if sound_speed is None or not stress > 0:  # the stress is zero or NaN
         return []
     viscosity, allowed = stress / rate, LATE * until
     spring, sound = viscosity / (modulus or math.inf), viscosity / (density * sound_speed**2)

@@ -38,7 +38,7 @@ class Refining(Protocol):
         """
 
     def nearest_pairs(self, largest: float) -> np.ndarray:
-        """Pairs to be merged, ``(m, 2)`` numbers of rows, nearest first; empty where there are none.
+        """Pairs of particles to merge, ``(m, 2)`` indices, the nearest pair first; ``(0, 2)`` without a pair.
 
         In each cell with more particles of a material than a full cell at the start, as many pairs as there
         are too many. The two are of the same fluid and body, each is the nearest to the other, and their

@@ -167,7 +167,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
 def _volume(vertices: np.ndarray, faces: np.ndarray) -> float:
     """Volume, m³, that a closed surface encloses; negative if its normals point inwards."""
     a, b, c = (vertices - vertices.mean(axis=0))[faces.T]
-    with np.errstate(all="ignore"):  # an overflow gives no number above 0
+    with np.errstate(all="ignore"):  # an overflow gives a volume that is not finite
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 

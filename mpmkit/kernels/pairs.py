@@ -18,8 +18,8 @@ def nearest_partners(first, position, kind, size, largest, partner, square):
         kind: ``(n,)`` integers.
         size: ``(n,)``.
         largest: of the sum of two sizes.
-        partner: ``(n,)``, becomes the row of the nearest, the first of them where several are as near; -1
-            where there is none.
+        partner: ``(n,)``, becomes the index of the nearest particle, of several the first; -1 if there is no
+            such particle.
         square: ``(n,)``, becomes the square of its distance.
     """
     dim = position.shape[1]
