@@ -28,6 +28,7 @@ class Averager:
         dim, support = weight.shape[1:]
         self.particles = particles
         self.window = window
+        self.walls = None
         self.sorting = sorting
         self._tables = base, weight
         self._scatter_pairs, self._gather_scalar = scatter_pairs(dim, support), gather_scalar(dim, support)
@@ -43,7 +44,12 @@ class Averager:
         self.sums(values, weight)
         if crowding is not None:
             nodes.relieve_pairs(w.pairs, crowding, *active.arguments)
+        if self.walls:
+            self.walls.fold_pairs(w.pairs)
         nodes.divide_pairs(w.pairs, w.average, *active.arguments)
+        if self.walls:
+            self.walls.fill_average(w.average)
+            nodes.fill(w.average, active.faces, active.mirrors, active.plane_first, 0, 1, False)
 
     def at_particles(self) -> np.ndarray:
         """What ``window.average`` holds, at the particles, ``(n,)``."""

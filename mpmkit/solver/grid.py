@@ -40,6 +40,7 @@ class Grid:
     faces: np.ndarray
     friction: np.ndarray
     axes: tuple[str, ...]
+    radial: bool = False
 
     @classmethod
     def of(cls, case: Case) -> Grid:
@@ -57,7 +58,7 @@ class Grid:
         if space.radial:
             faces[0, 0] = node_kernels.MIRROR
         cells = np.rint((ends[:, 1] - ends[:, 0]) / spec.cell_size).astype(np.int64)
-        return cls(ends[:, 0], cells, spec.cell_size, faces, friction, space.axes)
+        return cls(ends[:, 0], cells, spec.cell_size, faces, friction, space.axes, space.radial)
 
     @cached_property
     def dim(self) -> int:

@@ -44,6 +44,8 @@ class SceneOperations:
         self.radial = radial
         self.window = Window(grid)
         self.acoustic_time = math.inf
+        self.time = 0.0
+        self.walls = None
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
         self.stage = Stage(scheme, grid, particles, radial, gravity)
@@ -111,6 +113,9 @@ class SceneOperations:
             self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
             self._begun += 1
             self._evaluate_shapes()
+            if self.walls:
+                self.averager.walls = self.walls
+                self.walls.begin(self.base, self.weight, self.time)
         return lost
 
     def _sort(self) -> int | None:
@@ -160,13 +165,19 @@ class SceneOperations:
         nodes.clear(self.window.nodes, active.rows, active.tasks)
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
+        if self.walls:
+            self.walls.fold(True, forces)
         nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
+        if self.walls:
+            self.walls.mapped()
         self._account.mapped(forces)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
         self._map(momentum=False, forces=True)
         self._fold(1 + dim, 1 + 2 * dim)
+        if self.walls:
+            self.walls.fold(False, True)
         self._account.forced()
 
     def remap_velocity(self) -> None:
@@ -199,6 +210,8 @@ class SceneOperations:
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
         nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
+        if self.walls:
+            self.walls.solved(dt)
 
     # --- Nodes to particles
 

@@ -187,6 +187,7 @@ class Simulation:
         dt = min(self.time_step, at_most)
         self.operations.step(dt)
         self.time += dt
+        self.operations.time = self.time
         self.steps += 1
         self.particle_steps += len(self.particles)
         return dt
