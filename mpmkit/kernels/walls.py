@@ -26,9 +26,13 @@ import numpy as np
 from .compile import function
 from .scatter import NODE
 
+import os
+SYM = os.environ.get("SYM", "1") == "1"
+FOLD = os.environ.get("FOLD", "1") == "1"
 FAR = 1e300
 """Distance of nodes that are not near a wall."""
-AT, GHOST = 0.5, 2.0
+GHOST = 2.0
+AT = float(os.environ.get("BETA", "0.25"))
 """Cells from a wall within which a node is at it, and behind it within which it can be a ghost."""
 NEAR = 2.8
 """Cells from a wall within which a particle may lie so that nodes of its cell must know their distance."""
@@ -88,11 +92,11 @@ def find_nodes(at, number, distance, normal, lower, shape, strides, active, take
     count = ghosts = 0
     for k in range(len(at)):
         if active[at[k]]:
-            if -GHOST < distance[k] <= -AT:
+            if -GHOST < distance[k] <= AT - 1.0:
                 ghost[ghosts] = k
                 ghosts += 1
                 taken[at[k]] = True
-            elif -AT < distance[k] <= AT:
+            elif AT - 1.0 < distance[k] <= AT:
                 at_wall[count] = k
                 count += 1
     place = np.empty(dim)
@@ -206,11 +210,13 @@ def fold(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, m
             for a in range(dim):
                 f[a] = held[k, 1 + a] = nodes[g, 1 + dim + a]
             _reflect(f, normal[k], odd)
+            if not FOLD:
+                f[:] = 0.0
         for c in range(index.shape[1]):
             w = weight[k, c]
             if w > 0.0:
                 i = index[k, c]
-                if momentum:
+                if momentum and FOLD:
                     nodes[i, 0] += w * m
                     for a in range(dim):
                         nodes[i, 1 + a] += w * v[a]
@@ -310,7 +316,7 @@ def at_wall_velocities(nodes, at_wall, at, distance, normal, index, weight, free
             if part > 0.0:
                 if i == g:
                     own += b * part
-                else:
+                elif SYM:
                     for e in range(dim):
                         if free[i] >> e & 1:
                             stiffness[count, e] += (b * part) ** 2 / nodes[i, 0]
@@ -328,6 +334,8 @@ def _give(nodes, g, index, share, free, dim, impulse, solved):
     for c in range(len(share)):
         if share[c] != 0.0:
             i = g if c == 0 else index[c - 1]
+            if not SYM and i != g:
+                continue
             for e in range(dim):
                 if free[i] >> e & 1:
                     change = share[c] * impulse[e] / nodes[i, 0]
@@ -401,25 +409,48 @@ def push(nodes, acting, at, normal, index, free, share, stiffness, before, after
 
 
 @function()
-def fold_pairs(pairs, ghost, at, index, weight, touched):
-    """Add the sums of an average at touched ghosts to the nodes around their images, and clear them."""
-    for k in ghost:
-        g = at[k]
-        if touched[g]:
-            for c in range(index.shape[1]):
-                if weight[k, c] > 0.0:
-                    pairs[index[k, c], 0] += weight[k, c] * pairs[g, 0]
-                    pairs[index[k, c], 1] += weight[k, c] * pairs[g, 1]
-            pairs[g, 0] = pairs[g, 1] = 0.0
+def find_images(at, number, distance, normal, lower, shape, strides, active, taken, behind, index, weight):
+    """Nodes behind a wall, and the nodes around the image of each: for averages of scalars."""
+    dim = number.shape[1]
+    count = 0
+    place = np.empty(dim)
+    for k in range(len(at)):
+        if active[at[k]] and -GHOST < distance[k] < 0.0:
+            for a in range(dim):
+                place[a] = number[k, a] - 2.0 * distance[k] * normal[k, a]
+            if _corners(place, lower, shape, strides, active, taken, index[k], weight[k]):
+                behind[count] = k
+                count += 1
+    return count
 
 
 @function()
-def fill_average(average, ghost, at, index, weight, touched):
+def fold_pairs(pairs, behind, at, index, weight, touched, held):
+    """Add the sums of an average at touched ghosts to the nodes around their images, and clear them."""
+    for k in behind:
+        g = at[k]
+        held[k, 0] = held[k, 1] = 0.0
+        if touched[g]:
+            held[k, 0], held[k, 1] = pairs[g, 0], pairs[g, 1]
+            pairs[g, 0] = pairs[g, 1] = 0.0
+    for k in behind:
+        if held[k, 0] != 0.0:
+            for c in range(index.shape[1]):
+                if weight[k, c] > 0.0:
+                    pairs[index[k, c], 0] += weight[k, c] * held[k, 0]
+                    pairs[index[k, c], 1] += weight[k, c] * held[k, 1]
+
+
+@function()
+def fill_average(average, behind, at, index, weight, touched, held):
     """Give touched ghosts the average at their images."""
-    for k in ghost:
+    for k in behind:
         g = at[k]
         if touched[g]:
             value = 0.0
             for c in range(index.shape[1]):
                 value += weight[k, c] * average[index[k, c], 0]
-            average[g, 0] = value
+            held[k, 0] = value
+    for k in behind:
+        if touched[at[k]]:
+            average[at[k], 0] = held[k, 0]

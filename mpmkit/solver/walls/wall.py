@@ -78,6 +78,10 @@ class Wall:
         self._ghost = np.empty(k, dtype=np.int64)
         self.index = np.zeros((k, 1 << dim), dtype=np.int64)
         self.weight = np.zeros((k, 1 << dim))
+        self.image = np.zeros((k, 1 << dim), dtype=np.int64)
+        self.image_weight = np.zeros((k, 1 << dim))
+        self._pair = np.zeros((k, 2))
+        self._behind = np.empty(k, dtype=np.int64)
         self._held = np.zeros((k, 1 + dim))
         self._impulse = np.zeros((k, dim))
         self._number = np.ascontiguousarray(self._all[self._at])
@@ -102,6 +106,10 @@ class Wall:
             self._at, self._number, self.d, self.normal, window.lower, np.array(window.shape),
             np.array(window.strides), self._active, self._taken, self._at_wall, self._ghost, self.index, self.weight,
         )
+        n = kernels.find_images(
+            self._at, self._number, self.d, self.normal, window.lower, np.array(window.shape),
+            np.array(window.strides), self._active, self._taken, self._behind, self.image, self.image_weight)
+        self.behind = self._behind[:n]
         self.at_wall, self.ghost = self._at_wall[:count], self._ghost[:ghosts]
 
     def begin(self, time: float) -> None:

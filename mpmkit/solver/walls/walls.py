@@ -57,8 +57,8 @@ class Walls:
 
     def fold_pairs(self, pairs):
         for w in self.walls:
-            kernels.fold_pairs(pairs, w.ghost, w._at, w.index, w.weight, w.touched)
+            kernels.fold_pairs(pairs, w.behind, w._at, w.image, w.image_weight, w.touched, w._pair)
 
     def fill_average(self, average):
         for w in reversed(self.walls):
-            kernels.fill_average(average, w.ghost, w._at, w.index, w.weight, w.touched)
+            kernels.fill_average(average, w.behind, w._at, w.image, w.image_weight, w.touched, w._pair)
