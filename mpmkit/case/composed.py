@@ -11,10 +11,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, create_model, model_validator
 
-from ..contracts import ConstitutiveLaw
+from ..contracts import ConstitutiveLaw, Plugin
 from ..registry import Registry, installed
 from .consistency import check
-from .model import Body, Case, Material, Scheme
+from .model import Body, Case, Material, Scheme, Wall
 
 
 class CheckedCase(Case):
@@ -48,6 +48,8 @@ def _one_of(members: dict[str, type], key: str) -> Any:
     def tag(value: Any) -> Any:
         if isinstance(value, dict):
             return value.get(key)
+        if isinstance(value, Plugin):
+            return value.name
         return value if isinstance(value, str) else getattr(value, key, None)
 
     if not members:  # every one of them is broken or refused: only a case that is read fails of it
@@ -61,6 +63,11 @@ def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
     """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
     preset = Field(default=default, validate_default=True) if default in plugins else ...
     return _one_of(plugins, "name"), preset
+
+
+def _named(plugins: dict[str, type]) -> tuple[Any, Any]:
+    """Annotation of a field that holds a plug-in which says its name at ``kind``, and has no default."""
+    return _one_of(plugins, "kind"), ...
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -92,11 +99,19 @@ def case_model(registry: Registry) -> type[Case]:
         redistribution=_choice(registry.of_kind("redistribution"), "even"),
         refinement=_choice(registry.of_kind("refinement"), "none"),
     )
+    wall = create_model(
+        "Wall",
+        __base__=Wall,
+        __doc__=Wall.__doc__,
+        surface=_named(registry.of_kind("surface")),
+        contact=_named(registry.of_kind("contact")),
+    )
     model = create_model(
         "Case",
         __base__=CheckedCase,
         __doc__=Case.__doc__,
         bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
+        walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
         scheme=(scheme, Field(default={}, validate_default=True)),
     )
     model.registry = registry

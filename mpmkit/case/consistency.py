@@ -19,6 +19,7 @@ from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .state_variables import state_variables
 from .synonyms import nearest
+from .walls import check_walls
 
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
@@ -52,6 +53,7 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    check_walls(case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)

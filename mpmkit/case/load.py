@@ -85,9 +85,12 @@ def read_case(path: str | Path) -> dict[str, Any]:
 
 def count_from(folder: Path, data: dict[str, Any]) -> None:
     """Make the relative paths of the files that a case names absolute; what is no such path is left alone."""
-    bodies = data.get("bodies")
-    for body in bodies if isinstance(bodies, list) else []:
-        shape = body.get("shape") if isinstance(body, dict) else None
+    bodies, walls = data.get("bodies"), data.get("walls")
+    places = list(bodies) if isinstance(bodies, list) else []
+    for wall in walls.values() if isinstance(walls, dict) else []:
+        places.append(wall.get("surface") if isinstance(wall, dict) else None)
+    for place in places:
+        shape = place.get("shape") if isinstance(place, dict) else None
         if not isinstance(shape, dict):
             continue
         for field in FILES.get(str(shape.get("kind")), ()):

@@ -153,9 +153,9 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
 
     Of the plug-ins that were not loaded, those that may have been meant are named, or else all of them.
     """
-    kinds = [
-        key for key in path if key in KINDS and (path[0] == "scheme" or key in ("law", "equation_of_state"))
-    ]
+    below = path[2:] if path[0] == "walls" else path  # a wall may have the name of a kind
+    anywhere = path[0] in ("scheme", "walls")
+    kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
     if not kinds or not registry.problems:
         return [], ""
     kind, reasons = str(kinds[0]), []

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from ..contracts import ConstitutiveLaw, EquationOfState, quantity
+from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Surface, quantity
 from ..contracts.order import UpdateOrder
 from ..contracts.redistribution import Redistribution
 from ..contracts.refinement import Refinement
@@ -162,6 +162,13 @@ class Scheme(Model):
         return data | {"splitting": splits}
 
 
+class Wall(Model):
+    """A surface, which may move, and what it allows the material that touches it."""
+
+    surface: Surface
+    contact: Contact
+
+
 class Case(Model):
     """A whole scene."""
 
@@ -182,6 +189,11 @@ class Case(Model):
     )
     grid: Grid
     bodies: list[Body] = Field(min_length=1)
+    walls: dict[str, Wall] = Field(
+        default={},
+        description="walls beside the faces of the grid, each with a name of letters, digits, '_' and '-'",
+        json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
+    )
     scheme: Scheme
     output: OutputSettings = OutputSettings()
 

@@ -21,6 +21,8 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
         used.append(("law", law))
         if law.uses_equation_of_state:
             used.append(("equation_of_state", body.material.equation_of_state))
+    for wall in case.walls.values():
+        used += [("surface", wall.surface), ("contact", wall.contact)]
     return used
 
 

@@ -14,9 +14,16 @@ def resolved(case: Case) -> dict[str, Any]:
     data["gravity"] = case.gravity_vector.tolist()
     data["output"]["history_interval"] = case.output.history_interval or case.until / ROWS
     data["output"]["frame_interval"] = case.output.frame_interval or case.until / FRAMES
+    for wall in data["walls"].values():
+        _fill_base(wall["surface"].get("shape"), case)
     for body, entry in zip(case.bodies, data["bodies"], strict=True):
         entry["particles_per_cell"] = list(body.particles_along_axes(case.space_.dim))
-        if entry["shape"].get("base", ...) is None:
-            entry["shape"]["base"] = [0.0] * case.space_.dim
+        _fill_base(entry["shape"], case)
         entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
     return data
+
+
+def _fill_base(shape: Any, case: Case) -> None:
+    """The place of an upright shape that has none."""
+    if isinstance(shape, dict) and shape.get("base", ...) is None:
+        shape["base"] = [0.0] * case.space_.dim

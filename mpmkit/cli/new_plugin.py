@@ -18,6 +18,8 @@ KINDS = [
     "redistribution",
     "refinement",
     "equation_of_state",
+    "surface",
+    "contact",
 ]
 
 

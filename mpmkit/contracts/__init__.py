@@ -2,6 +2,7 @@
 
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
+from .contact import Contact, ContactNodes
 from .elastoviscoplastic import ElastoviscoplasticLaw
 from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
@@ -13,6 +14,7 @@ from .order import UpdateOrder
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
+from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
 from .volumetric import VolumetricTreatment
@@ -24,6 +26,8 @@ __all__ = [
     "REST_SHEAR_RATE",
     "Cells",
     "ConstitutiveLaw",
+    "Contact",
+    "ContactNodes",
     "ElastoviscoplasticLaw",
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
@@ -31,13 +35,16 @@ __all__ = [
     "Kinematics",
     "Lattice",
     "Operations",
+    "PlacedSurface",
     "Plugin",
     "Redistributing",
     "Redistribution",
     "Refinement",
     "Refining",
     "ShapeFunction",
+    "Space",
     "StateVariable",
+    "Surface",
     "UpdateOrder",
     "VelocityUpdate",
     "VolumetricTreatment",

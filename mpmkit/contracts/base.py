@@ -47,7 +47,7 @@ class Plugin(BaseModel):
     """Base of all descriptors. Its annotated fields are its parameters; its class variables say what it is.
 
     In a case file a plug-in is written by name, ``"cpgimp"``, or with parameters,
-    ``{"name": "cpgimp", "domain": "stretch"}``.
+    ``{"name": "cpgimp", "domain": "stretch"}``; surfaces and contacts have ``"kind"`` in place of ``"name"``.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
@@ -56,6 +56,8 @@ class Plugin(BaseModel):
     citation: ClassVar[str]
     api_version: ClassVar[int]
     """Version of the contracts that it is written for, as a number: so an old plug-in is noticed."""
+    named_by: ClassVar[str] = "name"
+    """Key at which an object in a case names it; a matter of its kind."""
 
     def cautions(self, case: Any) -> list[str]:
         """Sentences on what is known to fail where a case, whose fields are those of case files, uses it."""
@@ -67,12 +69,12 @@ class Plugin(BaseModel):
         if isinstance(value, str):
             return {}
         if isinstance(value, dict):
-            return {key: item for key, item in value.items() if key != "name"}
+            return {key: item for key, item in value.items() if key != cls.named_by}
         return value
 
     @model_serializer(mode="wrap")
     def _with_name(self, handler: Any) -> dict[str, Any]:
-        return {"name": self.name, **handler(self)}
+        return {self.named_by: self.name, **handler(self)}
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -82,6 +84,6 @@ class Plugin(BaseModel):
         name = getattr(cls, "name", None)
         if name is None:
             return body
-        body["properties"] = {"name": {"const": name}, **body.get("properties", {})}
-        body["required"] = ["name", *body.get("required", [])]
+        body["properties"] = {cls.named_by: {"const": name}, **body.get("properties", {})}
+        body["required"] = [cls.named_by, *body.get("required", [])]
         return {"anyOf": [{"const": name, "description": (cls.__doc__ or "").split("\n")[0]}, body]}

@@ -10,12 +10,15 @@ from collections.abc import Iterable
 
 import pluggy
 
+from .base import Plugin
+from .contact import Contact
 from .equation_of_state import EquationOfState
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
 from .redistribution import Redistribution
 from .refinement import Refinement
 from .shape import ShapeFunction
+from .surface import Surface
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
 
@@ -64,7 +67,17 @@ def mpmkit_refinements() -> Iterable[type[Refinement]]:  # type: ignore[empty-bo
     """Refinements of this module."""
 
 
-KINDS: dict[str, tuple[str, type]] = {
+@hookspec
+def mpmkit_surfaces() -> Iterable[type[Surface]]:  # type: ignore[empty-body]
+    """Surfaces of this module."""
+
+
+@hookspec
+def mpmkit_contacts() -> Iterable[type[Contact]]:  # type: ignore[empty-body]
+    """Contacts of this module."""
+
+
+KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
     "velocity": ("mpmkit_velocity_updates", VelocityUpdate),
@@ -73,5 +86,7 @@ KINDS: dict[str, tuple[str, type]] = {
     "redistribution": ("mpmkit_redistributions", Redistribution),
     "refinement": ("mpmkit_refinements", Refinement),
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
+    "surface": ("mpmkit_surfaces", Surface),
+    "contact": ("mpmkit_contacts", Contact),
 }
 """Kind of plug-in: its hook and its contract."""

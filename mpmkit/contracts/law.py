@@ -21,7 +21,7 @@ it was."""
 
 @dataclass(frozen=True)
 class StateVariable:
-    """A quantity that a law remembers at each particle.
+    """A quantity that a law remembers at each particle, or a contact at each node.
 
     >>> state = {"structure": StateVariable("1", "flocculation λ", initial="initial_structure")}
     """
@@ -34,11 +34,11 @@ class StateVariable:
     """Its value at the beginning: a number, an array of its shape, or the name of a parameter of the law (or
     of a property of it), so that a case can give it."""
 
-    def at_start(self, law: ConstitutiveLaw | None = None) -> np.ndarray:
+    def at_start(self, law: Plugin | None = None) -> np.ndarray:
         """The value at the beginning, of its shape.
 
         Args:
-            law: the one that declares it; not needed where ``initial`` is no name.
+            law: the law, or contact, that declares it; not needed where ``initial`` is no name.
 
         Raises:
             ValueError: there is no such value; the text says what is there and what is allowed.

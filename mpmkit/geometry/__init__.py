@@ -1,4 +1,4 @@
-"""Bodies: their shapes, and the particles that fill them."""
+"""Bodies: their shapes, the particles that fill them, and walls: their distances and motions."""
 
 from typing import Annotated, get_args
 
@@ -7,8 +7,11 @@ from pydantic import Field
 from .base import Shape
 from .box import Box
 from .cylinder import Cylinder
+from .distance import HalfSpace, Inverted, Solid
 from .frustum import Frustum
 from .mesh import Mesh
+from .motion import AnyMotion, Rotation
+from .moving import MovingSolid
 from .overlap import shared_volume
 from .sampling import Sample, expected_count, sample
 from .sphere import Sphere
@@ -24,13 +27,19 @@ FILES = {
 
 __all__ = [
     "FILES",
+    "AnyMotion",
     "AnyShape",
     "Box",
     "Cylinder",
     "Frustum",
+    "HalfSpace",
+    "Inverted",
     "Mesh",
+    "MovingSolid",
+    "Rotation",
     "Sample",
     "Shape",
+    "Solid",
     "Sphere",
     "expected_count",
     "sample",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from ..errors import CaseError
 from ..spaces import Space
+from .distance import Shell, Solid
 
 TOLERANCE = 1e-9
 """Part of a shape's largest extent by which a point may miss its surface and still be on it."""
@@ -25,9 +27,9 @@ class Shape(BaseModel):
     lattice point that falls on a face is taken is then not left to rounding, and a symmetric body on a
     symmetric lattice gets symmetric particles.
 
-    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_size``, ``_volume`` and
-    ``_volume_between``; one that is read from a file gives ``files``, ``content`` and ``content_name`` as
-    well.
+    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_size``, ``_volume``, ``_volume_between``
+    and ``_solid``; one with ends that a shell may leave open gives ``ends`` and ``_shell``, and one
+    that is read from a file ``files``, ``content`` and ``content_name``.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
@@ -114,6 +116,37 @@ class Shape(BaseModel):
         self._require(space)
         return self._middle() if space.dim == 3 else None
 
+    def solid(self, space: Space) -> Solid:
+        """The shape in its space, as a solid that tells distances; exact also near edges and corners.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        return self._solid(space)
+
+    def ends(self, space: Space) -> tuple[str, ...]:
+        """Names of the ends that a shell around the shape may leave open."""
+        return ()
+
+    def ends_left_open(self, space: Space) -> tuple[str, ...]:
+        """Those that it leaves open unless it is told otherwise."""
+        return ()
+
+    def shell(self, space: Space, thickness: float, open_ends: Sequence[str] | None = None) -> Solid:
+        """A shell around the shape, whose inner surface is that of the shape.
+
+        Args:
+            space: the space of the scene.
+            thickness: m, outwards.
+            open_ends: of ``ends``; default: ``ends_left_open``.
+
+        Raises:
+            CaseError: the space cannot hold the shape.
+        """
+        self._require(space)
+        return self._shell(space, thickness, self.ends_left_open(space) if open_ends is None else open_ends)
+
     def content(self, field: str) -> bytes:
         """A file in place of that in ``field``: it gives the same shape to the bit, and needs no other file.
 
@@ -152,6 +185,12 @@ class Shape(BaseModel):
             f"the {self.kind}'s {field} is {value}, but in the space {space.name} it must be "  # type: ignore[attr-defined]
             "[0, z]: the body turns about r = 0"
         )
+
+    @abstractmethod
+    def _solid(self, space: Space) -> Solid: ...
+
+    def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
+        return Shell(self._solid(space), thickness)
 
     @abstractmethod
     def _problem(self, space: Space) -> str | None:

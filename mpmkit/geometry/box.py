@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from pydantic import model_validator
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape
+from .distance import Brick, BrickShell, Solid
 
 
 class Box(Shape):
@@ -43,6 +45,27 @@ class Box(Shape):
         if space.radial and self.lower[0] < 0:
             return f"the box's lower is {self.lower}, but in the space {space.name} its r must be at least 0"
         return None
+
+    def _solid(self, space: Space) -> Solid:
+        return self._brick(space)
+
+    def _brick(self, space: Space) -> Brick:
+        """A cylinder is the whole of its section, so that no surface is at the axis."""
+        lower, upper = np.array(self.lower, dtype=float), np.array(self.upper, dtype=float)
+        if space.radial and lower[0] == 0:
+            lower[0] = -upper[0]
+        return Brick(lower, upper)
+
+    def ends(self, space: Space) -> tuple[str, ...]:
+        at_axis = space.radial and self.lower[0] == 0
+        return tuple(face for face in space.faces if not (at_axis and face == "r_min"))
+
+    def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
+        faces = [[f"{axis}_{side}" not in open_ends for axis in space.axes] for side in ("min", "max")]
+        closed = np.array(faces)
+        if "r_min" not in self.ends(space):
+            closed[0, 0] = closed[1, 0]
+        return BrickShell(self._brick(space), thickness, closed)
 
     def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
         return self.lower, self.upper

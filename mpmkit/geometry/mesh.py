@@ -15,6 +15,8 @@ from ..output.content_names import name_by_content
 from ..spaces import Space
 from .base import Shape
 from .crossing import crossing
+from .distance import Solid
+from .distance.surface_mesh import SurfaceMesh
 from .mesh_file import as_ply, read_surface, require_file
 
 
@@ -67,6 +69,10 @@ class Mesh(Shape):
         except CaseError as error:
             return str(error)
         return None
+
+    def _solid(self, space: Space) -> Solid:
+        surface = self._surface()
+        return SurfaceMesh(np.ascontiguousarray(surface.vertices), np.ascontiguousarray(surface.faces))
 
     def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
         lower, upper = self._surface().bounds.tolist()

@@ -10,6 +10,7 @@ import numpy as np
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape, disc_area, squared_distance
+from .distance import Ball, Solid
 from .revolved import part_of_revolved
 
 
@@ -29,6 +30,9 @@ class Sphere(Shape):
         return self._wrong_length("centre", self.centre, space) or self._off_axis(
             "centre", self.centre, space
         )
+
+    def _solid(self, space: Space) -> Solid:
+        return Ball(np.array(self.centre, dtype=float), self.radius)
 
     def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
         lower = [x - self.radius for x in self.centre]

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape, squared_distance
+from .distance import Revolved, Section, Solid, trapezium, trapezium_shell
+from .distance.section import Loop
 from .revolved import part_of_revolved
 
 
@@ -40,6 +43,29 @@ class Upright(Shape):
     def _problem(self, space: Space) -> str | None:
         foot = self._foot(space)
         return self._wrong_length("base", foot, space) or self._off_axis("base", foot, space)
+
+    def _solid(self, space: Space) -> Solid:
+        return self._turned(trapezium(*self._radii(), self.height), space)
+
+    def ends(self, space: Space) -> tuple[str, ...]:
+        """An end of a full cone is a point, and cannot be open."""
+        return tuple(
+            name for name, radius in zip(("bottom", "top"), self._radii(), strict=True) if radius > 0
+        )
+
+    def ends_left_open(self, space: Space) -> tuple[str, ...]:
+        """A mould has neither a floor nor a lid of its own."""
+        return self.ends(space)
+
+    def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
+        return self._turned(trapezium_shell(*self._radii(), self.height, thickness, open_ends), space)
+
+    def _turned(self, loops: list[Loop], space: Space) -> Solid:
+        """The section that loops make around the axis of the body; in 3-D what it makes as it turns."""
+        *middle, foot = self._foot(space)
+        if space.dim == 3:
+            return Revolved(Section.of(loops, (0.0, foot)), np.array(middle, dtype=float))
+        return Section.of(loops, (middle[0], foot))
 
     def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
         *middle, bottom = self._foot(space)

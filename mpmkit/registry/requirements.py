@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import inspect
 import re
+from collections.abc import Mapping
 
 from ..contracts import (
     API_VERSION,
     KINDS,
     OLDEST_API_VERSION,
     ConstitutiveLaw,
+    Contact,
     Plugin,
     ShapeFunction,
     StateVariable,
+    Surface,
 )
 from ..contracts.shape import MOST_NODES
 
@@ -41,12 +44,21 @@ def check(plugin: type[Plugin], kind: str) -> None:
     if inspect.isabstract(plugin):
         missing = ", ".join(sorted(plugin.__abstractmethods__))
         raise TypeError(f"{plugin.__name__} lacks {missing}, which a {contract.__name__} must have")
-    for parameter in RESERVED.get(kind, {"name"}) & set(plugin.model_fields):
+    if issubclass(plugin, Surface) and (plugin.placed, plugin.distance) == (Surface.placed, Surface.distance):
+        raise TypeError(f"{plugin.__name__} lacks distance, which a Surface must have")
+    for parameter in RESERVED.get(kind, {contract.named_by}) & set(plugin.model_fields):
         raise ValueError(
             f"it has a parameter '{parameter}', which a {kind} cannot have: the case has that key already"
         )
     if issubclass(plugin, ConstitutiveLaw):
-        _check_state(plugin)
+        _check_variables(plugin, "state", plugin.state)
+    if issubclass(plugin, Contact):
+        _check_variables(plugin, "memory", plugin.memory)
+        for name, variable in plugin.memory.items():
+            if variable.shape != ():
+                raise ValueError(
+                    f"its memory '{name}' has the shape {variable.shape}; it must be a number at each node"
+                )
     plugin.model_json_schema()  # a parameter that has none would break the schema of all
 
 
@@ -69,18 +81,19 @@ def _check_version(plugin: type[Plugin]) -> None:
     raise ValueError(f"it is written for version {version} of the plug-in contracts; {supported}; {hint}")
 
 
-def _check_state(law: type[ConstitutiveLaw]) -> None:
-    for name, variable in law.state.items():
+def _check_variables(plugin: type[Plugin], what: str, variables: Mapping[str, StateVariable]) -> None:
+    for name, variable in variables.items():
         if not isinstance(variable, StateVariable):
-            raise TypeError(f"its state '{name}' is {variable!r}; it must be a StateVariable")
+            raise TypeError(f"its {what} '{name}' is {variable!r}; it must be a StateVariable")
         if not isinstance(variable.initial, str):
             try:
                 variable.at_start()
             except ValueError as error:
-                raise ValueError(f"its state '{name}' {error}") from None
-        elif variable.initial not in law.model_fields and not hasattr(law, variable.initial):
-            parameters = ", ".join(law.model_fields) or "none"
+                raise ValueError(f"its {what} '{name}' {error}") from None
+        elif variable.initial not in plugin.model_fields and not hasattr(plugin, variable.initial):
+            parameters = ", ".join(plugin.model_fields) or "none"
+            of = "law" if what == "state" else "contact"
             raise ValueError(
-                f"its state '{name}' starts from '{variable.initial}', which is no parameter of the law; "
+                f"its {what} '{name}' starts from '{variable.initial}', which is no parameter of the {of}; "
                 f"its parameters: {parameters}"
             )

@@ -26,6 +26,8 @@ KINDS = {
     "redistribution": "redistribution",
     "refinement": "refinement",
     "equation_of_state": "equation of state",
+    "surface": "surface",
+    "contact": "contact",
 }
 """Kinds of plug-ins that there are templates for, and what they are called."""
 PREFIX = "mpmkit-"

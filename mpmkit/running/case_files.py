@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..case.model import Case
+from ..case.model import Case, Wall
 from ..case.overrides import assign
 from ..case.resolved import resolved
 from ..errors import CaseError
@@ -19,8 +19,8 @@ from ..output.run_directory import MESHES
 class NamedFile:
     """A file that a case names."""
 
-    body: int
-    """number of the body whose shape names it"""
+    at: str
+    """place in the case of the shape that names it, such as ``bodies.0.shape``"""
     shape: Shape
     field: str
     """of the shape"""
@@ -30,7 +30,7 @@ class NamedFile:
     @property
     def where(self) -> str:
         """Place in the case, such as ``bodies.0.shape.file``."""
-        return f"bodies.{self.body}.shape.{self.field}"
+        return f"{self.at}.{self.field}"
 
     @property
     def path(self) -> Path:
@@ -49,16 +49,28 @@ class NamedFile:
 
 
 def named_files(case: Case) -> list[NamedFile]:
-    """All of them, in the order of the bodies.
+    """All of them, in the order of the bodies and of the walls.
 
     Raises:
         CaseError: one cannot be read.
     """
     return [
-        NamedFile(number, body.shape, field, body.shape.content_name(field))
-        for number, body in enumerate(case.bodies)
-        for field in body.shape.files
+        NamedFile(at, shape, field, shape.content_name(field))
+        for at, shape in _shapes(case).items()
+        for field in shape.files
     ]
+
+
+def _shapes(case: Case) -> dict[str, Shape]:
+    """The shapes of a case by their places in it: of bodies, and of surfaces that are made of one."""
+    found: dict[str, Shape] = {
+        f"bodies.{number}.shape": body.shape for number, body in enumerate(case.bodies)
+    }
+    for name, wall in case.walls.items():
+        shape = getattr(wall.surface, "shape", None)
+        if isinstance(shape, Shape):
+            found[f"walls.{name}.surface.shape"] = shape
+    return found
 
 
 def portable(case: Case) -> dict[str, Any]:
@@ -77,8 +89,23 @@ def portable(case: Case) -> dict[str, Any]:
 
 def from_copies(case: Case, files: list[NamedFile], directory: Path) -> Case:
     """The case that names, instead of ``files``, their copies in a directory; its numbers are the same."""
-    bodies = list(case.bodies)
+    shapes = _shapes(case)
     for file in files:
-        shape = bodies[file.body].shape.model_copy(update={file.field: str(directory.absolute() / file.name)})
-        bodies[file.body] = bodies[file.body].model_copy(update={"shape": shape})
-    return case.model_copy(update={"bodies": bodies})
+        copy = str(directory.absolute() / file.name)
+        shapes[file.at] = shapes[file.at].model_copy(update={file.field: copy})
+    bodies = [
+        body.model_copy(update={"shape": shapes[f"bodies.{number}.shape"]})
+        for number, body in enumerate(case.bodies)
+    ]
+    walls = {
+        name: _with_shape(wall, shapes.get(f"walls.{name}.surface.shape"))
+        for name, wall in case.walls.items()
+    }
+    return case.model_copy(update={"bodies": bodies, "walls": walls})
+
+
+def _with_shape(wall: Wall, shape: Shape | None) -> Wall:
+    """A wall whose surface is made of another shape, if it is made of one."""
+    if shape is None:
+        return wall
+    return wall.model_copy(update={"surface": wall.surface.model_copy(update={"shape": shape})})

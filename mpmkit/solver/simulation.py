@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
+from ..errors import CaseError
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
@@ -50,6 +51,10 @@ class Simulation:
             MpmkitError: this process was forked from one that had used the threads.
         """
         require_threads()
+        if case.walls:
+            raise CaseError(
+                f"walls are not part of a run yet, and the case has {', '.join(case.walls)}; leave them out"
+            )
         self.case = case
         self.fraction = fraction
         self.time = 0.0

@@ -28,6 +28,7 @@ from .returned import (
 )
 from .shapes import particle_domain, rehearse_shape, require_bounds, require_weights
 from .treatments import Rehearsed
+from .walls import AuditedSurface, call_contact, placed, problem, rehearse_contact
 
 LOOKS = 20
 """Steps between two looks at all numbers of a scene with more than ``FEW`` particles."""
@@ -40,10 +41,15 @@ __all__ = [
     "LOOKS",
     "SAMPLE",
     "Account",
+    "AuditedSurface",
     "Rehearsed",
+    "call_contact",
     "described",
     "is_finite",
     "particle_domain",
+    "placed",
+    "problem",
+    "rehearse_contact",
     "rehearse_equation_of_state",
     "rehearse_law",
     "rehearse_shape",

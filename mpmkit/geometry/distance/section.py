@@ -1,0 +1,107 @@
+"""The distance of a plane region between straight edges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .solid import Found, Solid
+
+Loop = list[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Section(Solid):
+    """A plane region with straight edges; ``start`` and ``end``, m, (edges, 2), with the region on the left.
+
+    The nearest edge decides. Where its foot is between its ends, φ is the distance of its line, signed by the
+    side and exact to rounding; else it is that of the corner, signed by whether the point is in the region.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+
+    @classmethod
+    def of(cls, loops: Sequence[Loop], shift: Sequence[float] = (0.0, 0.0)) -> Section:
+        """The region that loops of corners, m, go around with the region on their left."""
+        starts, ends = [], []
+        for loop in loops:
+            corners = np.array(loop, dtype=float) + shift
+            following = np.roll(corners, -1, axis=0)
+            real = (corners != following).any(axis=1)
+            starts.append(corners[real])
+            ends.append(following[real])
+        return cls(np.concatenate(starts), np.concatenate(ends))
+
+    def distance(self, x: np.ndarray) -> Found:
+        k = len(x)
+        nearest, distance = np.full(k, np.inf), np.empty(k)
+        gradient, at_corner = np.empty((k, 2)), np.zeros(k, dtype=bool)
+        for a, b in zip(self.start, self.end, strict=True):
+            length = np.linalg.norm(b - a)
+            along = (b - a) / length
+            normal = np.array([along[1], -along[0]])
+            offset = x - a
+            place = offset @ along
+            foot = np.clip(place, 0.0, length)
+            to_foot = offset - foot[:, None] * along
+            square = (to_foot * to_foot).sum(axis=1)
+            better = square < nearest
+            nearest[better] = square[better]
+            beyond = ((foot != place) & (square > 0))[better]
+            at_corner[better] = beyond
+            # Of a corner the vector towards the point, of an edge its normal.
+            gradient[better] = np.where(beyond[:, None], to_foot[better], normal)
+            distance[better] = (offset @ normal)[better]
+        corner = np.flatnonzero(at_corner)
+        away = np.sqrt(nearest[corner])
+        sign = np.where(self.contains(x[corner]), -1.0, 1.0)
+        distance[corner] = sign * away
+        gradient[corner] *= (sign / away)[:, None]
+        return distance, gradient
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        """Whether points are in the region, (k,): a ray along the first axis then crosses edges an odd number
+        of times."""
+        inside = np.zeros(len(x), dtype=bool)
+        for a, b in zip(self.start, self.end, strict=True):
+            if a[1] != b[1]:
+                spans = (a[1] > x[:, 1]) != (b[1] > x[:, 1])
+                inside ^= spans & (x[:, 0] < a[0] + (x[:, 1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+        return inside
+
+    def hull(self) -> tuple[np.ndarray, float]:
+        return self.start, 0.0
+
+
+def trapezium(bottom: float, top: float, height: float) -> list[Loop]:
+    """The loop of a trapezium of half-widths ``bottom`` and ``top``, m, on the middle of its base."""
+    return [[(-bottom, 0.0), (bottom, 0.0), (top, height), (-top, height)]]
+
+
+def trapezium_shell(
+    bottom: float, top: float, height: float, thickness: float, open_ends: Sequence[str]
+) -> list[Loop]:
+    """The loops of a shell around a trapezium, flush with it at ``open_ends``, of "bottom" and "top".
+
+    Its sides are as thick as asked for, m, along their normals; its rims and its outer corners are flat.
+    """
+    slope = (top - bottom) / height
+    low = 0.0 if "bottom" in open_ends else -thickness
+    high = height if "top" in open_ends else height + thickness
+
+    def outer(z: float) -> float:
+        return bottom + slope * z + thickness * float(np.hypot(1.0, slope))
+
+    # Left and right, at the bottom (0) and at the top (1); capitals are outside.
+    l0, r0, l1, r1 = (-bottom, 0.0), (bottom, 0.0), (-top, height), (top, height)
+    L0, R0, L1, R1 = (-outer(low), low), (outer(low), low), (-outer(high), high), (outer(high), high)
+    if "bottom" in open_ends and "top" in open_ends:
+        return [[r0, R0, R1, r1], [L0, l0, l1, L1]]
+    if "top" in open_ends:
+        return [[L0, R0, R1, r1, r0, l0, l1, L1]]
+    if "bottom" in open_ends:
+        return [[R1, L1, L0, l0, l1, r1, r0, R0]]
+    return [[L0, R0, R1, L1], [r0, l0, l1, r1]]

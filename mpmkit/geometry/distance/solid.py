@@ -1,0 +1,78 @@
+"""What every solid answers, and solids made of others."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+Found = tuple[np.ndarray, np.ndarray]
+"""Signed distances φ, m, (k,), and their gradients, unit vectors, (k, dim)."""
+
+
+class Solid(ABC):
+    """A set of points with a signed distance φ: above 0 outside, below 0 inside.
+
+    The gradient ∇φ is that of the nearest point of the surface. Where several are nearest it is that of one.
+    """
+
+    @abstractmethod
+    def distance(self, x: np.ndarray) -> Found:
+        """φ, m, (k,), and ∇φ, (k, dim), at points, m, (k, dim)."""
+
+    @abstractmethod
+    def hull(self) -> tuple[np.ndarray, float] | None:
+        """Points, m, (m, dim), and a radius, m: no point of its surface is farther from the convex hull of
+        the points; None if the surface has no end."""
+
+
+@dataclass(frozen=True)
+class HalfSpace(Solid):
+    """φ = (x - point)·normal: all that is behind a plane. Both are (dim,), the normal of length 1."""
+
+    point: np.ndarray
+    normal: np.ndarray
+
+    def distance(self, x: np.ndarray) -> Found:
+        return (x - self.point) @ self.normal, np.tile(self.normal, (len(x), 1))
+
+    def hull(self) -> None:
+        return None
+
+
+@dataclass(frozen=True)
+class Inverted(Solid):
+    """-φ: all of space around a solid."""
+
+    solid: Solid
+
+    def distance(self, x: np.ndarray) -> Found:
+        distance, gradient = self.solid.distance(x)
+        return -distance, -gradient
+
+    def hull(self) -> tuple[np.ndarray, float] | None:
+        return self.solid.hull()
+
+
+@dataclass(frozen=True)
+class Shell(Solid):
+    """|φ - t/2| - t/2: what is outside a solid and no farther from it than t, m, the thickness.
+
+    The outer surface is rounded around the edges of the solid. φ of a point in the shell is exact as long as
+    the outer surface has no fold nearer to it than the thickness.
+    """
+
+    solid: Solid
+    thickness: float
+
+    def distance(self, x: np.ndarray) -> Found:
+        distance, gradient = self.solid.distance(x)
+        off_middle = distance - self.thickness / 2
+        return np.abs(off_middle) - self.thickness / 2, np.where(off_middle < 0, -1.0, 1.0)[
+            :, None
+        ] * gradient
+
+    def hull(self) -> tuple[np.ndarray, float] | None:
+        inner = self.solid.hull()
+        return None if inner is None else (inner[0], inner[1] + self.thickness)

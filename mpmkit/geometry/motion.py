@@ -1,0 +1,235 @@
+"""Rigid motions: displacement along a line or a table, rotation, oscillation."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from itertools import pairwise
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..contracts.base import quantity
+from ..spaces import Space
+
+Hull = tuple[np.ndarray, float]
+"""Points, m, (m, dim), and how far, m, a body reaches beyond their convex hull."""
+
+
+class Motion(BaseModel):
+    """A rigid motion, x = point + Q(t) (X - point) + u(t); X is where the point of the body is at first.
+
+    By default it does not turn: Q is the unit matrix.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    @abstractmethod
+    def vectors(self) -> dict[str, list[float]]:
+        """Its vectors, by the name of the field: each has a component for each axis of the space."""
+
+    @abstractmethod
+    def displacement(self, t: float) -> np.ndarray:
+        """u, m, (dim,), at a time, s."""
+
+    @abstractmethod
+    def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
+        """Velocity, m/s, (k, dim), of the body's points that are at ``x``, m, (k, dim)."""
+
+    @abstractmethod
+    def fastest(self, t0: float, t1: float, hull: Hull) -> float:
+        """Upper bound, m/s, between two times, of the velocity in a body with a ``hull``, see ``Solid``."""
+
+    def problem(self, space: Space) -> str | None:
+        """Why it cannot be in a space, in words that follow "the motion's"; None if it can."""
+        for field, vector in self.vectors().items():
+            if len(vector) != space.dim:
+                return (
+                    f"{field} is {vector}, but the space {space.name} needs {space.dim} numbers "
+                    f"({', '.join(space.axes)})"
+                )
+            if space.radial and vector[0] != 0:
+                return (
+                    f"{field} is {vector}, but in the space {space.name} it must be [0, z]: a wall moves "
+                    "along the axis only"
+                )
+        return None
+
+    def back(self, x: np.ndarray, t: float) -> np.ndarray:
+        """X, m, (k, dim), of the points that are at ``x`` at a time."""
+        return x - self.displacement(t)
+
+    def turned(self, vectors: np.ndarray, t: float) -> np.ndarray:
+        """Vectors of the body, (k, dim), as they are turned at a time."""
+        return vectors
+
+
+class Spell(Motion):
+    """A motion that begins and ends; before it the body is at rest in its place, after it where it came."""
+
+    start: float = quantity("s", "time at which it begins; default: 0", default=0.0)
+    end: float | None = quantity("s", "time at which it ends; default: never", default=None)
+
+    @model_validator(mode="after")
+    def _ends_after_its_start(self) -> Spell:
+        if self.end is not None and self.end <= self.start:
+            raise ValueError(f"end is {self.end:g} s; it must be above start, {self.start:g} s")
+        return self
+
+    def _elapsed(self, t: float) -> float:
+        """Part of the motion that is done at a time, s."""
+        return max(0.0, min(t, math.inf if self.end is None else self.end) - self.start)
+
+    def _moves(self, t0: float, t1: float) -> bool:
+        """Whether it moves at some time of [t0, t1]."""
+        return t1 >= self.start and (self.end is None or t0 < self.end)
+
+
+class Uniform(Spell):
+    """u = velocity (t - start), from start to end."""
+
+    kind: Literal["velocity"]
+    velocity: list[float] = quantity("m/s", "velocity along each axis", min_length=2, max_length=3)
+
+    def vectors(self) -> dict[str, list[float]]:
+        return {"velocity": self.velocity}
+
+    def displacement(self, t: float) -> np.ndarray:
+        return self._elapsed(t) * np.array(self.velocity)
+
+    def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
+        return np.tile(np.array(self.velocity) * self._moves(t, t), (len(x), 1))
+
+    def fastest(self, t0: float, t1: float, hull: Hull) -> float:
+        return math.hypot(*self.velocity) if self._moves(t0, t1) else 0.0
+
+
+class Table(Motion):
+    """Displacements at given times with straight lines between them; at rest before the first and after the
+    last."""
+
+    kind: Literal["table"]
+    times: list[float] = quantity("s", "rising times", min_length=2)
+    positions: list[Annotated[list[float], Field(min_length=2, max_length=3)]] = quantity(
+        "m", "displacement along each axis at each of the times", min_length=2
+    )
+
+    @model_validator(mode="after")
+    def _is_a_table(self) -> Table:
+        if len(self.times) != len(self.positions):
+            raise ValueError(
+                f"positions has {len(self.positions)} entries and times {len(self.times)}; "
+                "there must be one for each time"
+            )
+        for before, after in pairwise(self.times):
+            if after <= before:
+                raise ValueError(
+                    f"times has {after:g} s after {before:g} s; each must be above the one before"
+                )
+        return self
+
+    def vectors(self) -> dict[str, list[float]]:
+        return {f"positions.{number}": position for number, position in enumerate(self.positions)}
+
+    def displacement(self, t: float) -> np.ndarray:
+        return np.array([np.interp(t, self.times, along) for along in zip(*self.positions, strict=True)])
+
+    def _rates(self) -> np.ndarray:
+        """Velocity, m/s, (rows - 1, dim), between each time and the next."""
+        return np.diff(np.array(self.positions), axis=0) / np.diff(np.array(self.times))[:, None]
+
+    def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
+        row = int(np.searchsorted(self.times, t, side="right")) - 1
+        moves = 0 <= row < len(self.times) - 1
+        return np.tile(self._rates()[row] if moves else np.zeros(x.shape[1]), (len(x), 1))
+
+    def fastest(self, t0: float, t1: float, hull: Hull) -> float:
+        times = np.array(self.times)
+        within = (times[:-1] <= t1) & (times[1:] > t0)
+        return float(np.linalg.norm(self._rates()[within], axis=1).max(initial=0.0))
+
+
+class Oscillation(Spell):
+    """u = amplitude (sin(2π f (t - start) + phase) - sin(phase)), from start to end."""
+
+    kind: Literal["oscillation"]
+    amplitude: list[float] = quantity("m", "amplitude along each axis", min_length=2, max_length=3)
+    frequency: float = quantity("Hz", "frequency f", gt=0)
+    phase: float = quantity("rad", "phase at the start", default=0.0)
+
+    def vectors(self) -> dict[str, list[float]]:
+        return {"amplitude": self.amplitude}
+
+    def displacement(self, t: float) -> np.ndarray:
+        angle = 2 * math.pi * self.frequency * self._elapsed(t) + self.phase
+        return (math.sin(angle) - math.sin(self.phase)) * np.array(self.amplitude)
+
+    def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
+        rate = 2 * math.pi * self.frequency * self._moves(t, t)
+        factor = rate * math.cos(2 * math.pi * self.frequency * self._elapsed(t) + self.phase)
+        return np.tile(factor * np.array(self.amplitude), (len(x), 1))
+
+    def fastest(self, t0: float, t1: float, hull: Hull) -> float:
+        return 2 * math.pi * self.frequency * math.hypot(*self.amplitude) if self._moves(t0, t1) else 0.0
+
+
+class Rotation(Spell):
+    """Q turns by rate (t - start) about an axis through ``point``, from start to end.
+
+    In 3-D it turns by the right-hand rule about ``axis``. In plane strain the axis is out of the plane, and a
+    positive rate turns x towards z.
+    """
+
+    kind: Literal["rotation"]
+    point: list[float] = quantity("m", "a point of the axis", min_length=2, max_length=3)
+    axis: list[float] | None = Field(
+        default=None, description="direction of the axis, only in 3d [1]", min_length=3, max_length=3
+    )
+    rate: float = quantity("rad/s", "angular velocity")
+
+    def vectors(self) -> dict[str, list[float]]:
+        return {"point": self.point}
+
+    def problem(self, space: Space) -> str | None:
+        if space.radial:
+            return f"kind is 'rotation', which the space {space.name} does not have"
+        if space.dim == 3 and (self.axis is None or not any(self.axis)):
+            what = "missing" if self.axis is None else self.axis
+            return f"axis is {what}; in the space {space.name} it must be a direction, such as [0, 0, 1]"
+        if space.dim == 2 and self.axis is not None:
+            return f"axis is {self.axis}, but in the space {space.name} it is out of the plane: leave it out"
+        return super().problem(space)
+
+    def displacement(self, t: float) -> np.ndarray:
+        return np.zeros(len(self.point))
+
+    def back(self, x: np.ndarray, t: float) -> np.ndarray:
+        return self.point + (x - self.point) @ self._turn(t)
+
+    def turned(self, vectors: np.ndarray, t: float) -> np.ndarray:
+        return vectors @ self._turn(t).T
+
+    def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
+        return self.rate * self._moves(t, t) * (x - self.point) @ self._generator().T
+
+    def fastest(self, t0: float, t1: float, hull: Hull) -> float:
+        points, radius = hull
+        arms = np.linalg.norm((points - self.point) @ self._generator().T, axis=1)
+        return abs(self.rate) * float(arms.max() + radius) if self._moves(t0, t1) else 0.0
+
+    def _generator(self) -> np.ndarray:
+        """K with K r = axis × r, (dim, dim), for the axis of length 1."""
+        if self.axis is None:
+            return np.array([[0.0, -1.0], [1.0, 0.0]])
+        x, y, z = np.array(self.axis) / np.linalg.norm(self.axis)
+        return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+    def _turn(self, t: float) -> np.ndarray:
+        """Q = I + sin(α) K + (1 - cos(α)) K², after Rodrigues."""
+        angle, K = self.rate * self._elapsed(t), self._generator()
+        return np.eye(len(K)) + math.sin(angle) * K + (1 - math.cos(angle)) * (K @ K)
+
+
+AnyMotion = Annotated[Uniform | Table | Rotation | Oscillation, Field(discriminator="kind")]
+"""Any motion as it stands in a case file, told apart by its ``kind``."""

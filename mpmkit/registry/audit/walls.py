@@ -1,0 +1,168 @@
+"""Surfaces and contacts: what they return, and what they write where they must not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...contracts import Contact, ContactNodes, Space, Surface
+from ...contracts.surface import PlacedSurface
+from ...errors import PluginFault
+from .fences import READ, WRITTEN, Fenced, require_intact, require_unchanged, sample
+from .returned import described, require_array, require_number, require_truth
+
+UNIT = 1e-6
+"""How far the length of a normal may be from 1."""
+
+
+def problem(author: Surface, space: Space) -> str | None:
+    """Why a space cannot hold a surface, in one sentence; None if it can.
+
+    Raises:
+        PluginFault: it returned something else.
+    """
+    found = author.problem(space)
+    if found is not None and not isinstance(found, str):
+        raise PluginFault(author, f"returned {described(found)} from problem; it must be a sentence, or None")
+    return found
+
+
+@dataclass(frozen=True)
+class AuditedSurface:
+    """A surface in its space, of which everything is looked at before it is used; see ``PlacedSurface``.
+
+    All calls are to be made in a block of ``blaming_plugins``.
+    """
+
+    author: Surface
+    placed: PlacedSurface
+
+    @property
+    def thickness(self) -> float:
+        """m; infinite for a wall that fills all that is behind its surface."""
+        given = getattr(self.placed, "thickness", None)
+        found = math.inf if given is None else require_number(self.author, "thickness", given)
+        if not found > 0:
+            raise PluginFault(self.author, f"has a thickness of {found} m; it must be above 0")
+        return found
+
+    def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """d, m, (k,), and n, (k, dim), at points, m, (k, dim)."""
+        returned = self.placed.distance(x, t)
+        if not isinstance(returned, tuple) or len(returned) != 2:
+            raise PluginFault(
+                self.author,
+                f"returned {described(returned)} from distance; it must be a tuple of two arrays, "
+                "distance and normal",
+            )
+        distance, normal = returned
+        require_array(self.author, "distance, as the first,", distance, (len(x),))
+        require_array(self.author, "distance, as the second,", normal, x.shape)
+        length = np.sqrt((normal * normal).sum(axis=1))
+        self._require("a distance that is not finite", np.isfinite(distance), x, t)
+        self._require("a normal that is not of length 1", np.abs(length - 1) <= UNIT, x, t)
+        return distance, normal
+
+    def velocity(self, x: np.ndarray, t: float) -> np.ndarray:
+        """m/s, (k, dim), of the wall at the points of its surface nearest to ``x``."""
+        returned = self.placed.velocity(x, t)
+        require_array(self.author, "velocity", returned, x.shape)
+        self._require("a velocity that is not finite", np.isfinite(returned).all(axis=1), x, t)
+        return returned
+
+    def fastest(self, t0: float, t1: float) -> float:
+        """Upper bound, m/s, of the velocity between two times, s."""
+        found = require_number(self.author, "fastest", self.placed.fastest(t0, t1))
+        if not 0 <= found < math.inf:
+            raise PluginFault(
+                self.author, f"gave {found} m/s as its fastest; it must be finite and not below 0"
+            )
+        return found
+
+    def present(self, t: float) -> bool:
+        """Whether it is there at a time, s."""
+        return require_truth(self.author, "present", self.placed.present(t))
+
+    def _require(self, what: str, sound: np.ndarray, x: np.ndarray, t: float) -> None:
+        if not sound.all():
+            place = ", ".join(f"{c:.4g}" for c in x[int(np.argmin(sound))])
+            raise PluginFault(self.author, f"gave {what} at ({place}) m, t = {t:.4g} s")
+
+
+def placed(author: Surface, space: Space) -> AuditedSurface:
+    """A surface in its space, for use in a block of ``blaming_plugins``.
+
+    Raises:
+        PluginFault: it has no surface for that space.
+    """
+    found = author.placed(space)
+    for method in ("distance", "velocity", "fastest", "present"):
+        if not callable(getattr(found, method, None)):
+            raise PluginFault(
+                author, f"returned {described(found)} from placed; it must have the method {method}"
+            )
+    return AuditedSurface(author, found)
+
+
+def call_contact(author: Contact, nodes: ContactNodes, dt: float | None = None) -> None:
+    """``mapped`` of a contact, or ``solved`` if there is a ``dt``, s.
+
+    Raises:
+        PluginFault: it returned something, replaced an array, or gave a velocity or a memory that is not
+            finite though those before were.
+    """
+    velocity, kept = nodes.velocity, dict(nodes.memory)
+    sound = np.isfinite(velocity).all()
+    what, returned = _act(author, nodes, dt)
+    if returned is not None:
+        raise PluginFault(
+            author, f"returned {described(returned)} from {what}; it must write into nodes.velocity"
+        )
+    if nodes.velocity is not velocity:
+        raise PluginFault(author, f"replaced nodes.velocity in {what}; it must write into the array there")
+    if nodes.memory.keys() != kept.keys() or any(nodes.memory[name] is not kept[name] for name in kept):
+        raise PluginFault(
+            author, f"replaced an array of nodes.memory in {what}; it must write into those there"
+        )
+    if sound and not np.isfinite(velocity).all():
+        raise PluginFault(author, f"gave a velocity in {what} that is not finite")
+    for name, array in nodes.memory.items():
+        if sound and not np.isfinite(array).all():
+            raise PluginFault(author, f"gave its memory '{name}' in {what} a value that is not finite")
+
+
+def rehearse_contact(author: Contact, nodes: ContactNodes, dt: float | None = None) -> None:
+    """``call_contact`` on copies of a sample of the nodes.
+
+    Raises:
+        PluginFault: it wrote to what it may only read, to a node that is not touched, or beyond an array.
+    """
+    which = sample(len(nodes.mass))
+    read = {
+        name: Fenced(getattr(nodes, name)[which], READ)
+        for name in ("position", "normal", "wall_velocity", "mass", "inner", "depth")
+    }
+    touched = Fenced(nodes.touched[which], WRITTEN)
+    velocity = Fenced(nodes.velocity[which], WRITTEN)
+    memory = {name: Fenced(array[which], WRITTEN) for name, array in nodes.memory.items()}
+    rehearsed = replace(
+        nodes,
+        velocity=velocity.rows,
+        touched=touched.rows,
+        memory={name: array.rows for name, array in memory.items()},
+        **{name: array.rows for name, array in read.items()},
+    )
+    call_contact(author, rehearsed, dt)
+    require_unchanged(author, {**read, "touched": touched})
+    require_intact(author, {"velocity": velocity, **{f"memory '{name}'": a for name, a in memory.items()}})
+    free = ~nodes.touched[which]
+    if velocity.rows[free].tobytes() != nodes.velocity[which][free].tobytes():
+        raise PluginFault(author, "changed the velocity of a node that no material has reached")
+
+
+def _act(author: Contact, nodes: ContactNodes, dt: float | None) -> tuple[str, object]:
+    if dt is None:
+        return "mapped", author.mapped(nodes)  # type: ignore[func-returns-value]
+    return "solved", author.solved(nodes, dt)  # type: ignore[func-returns-value]

@@ -1,0 +1,50 @@
+"""A wall along which material slips in proportion to the shear there."""
+
+import numpy as np
+
+from mpmkit.contracts import ContactNodes, hookimpl, quantity
+from mpmkit.contracts.contact import Parity
+
+from .slip import Slip
+
+
+class NavierSlip(Slip):
+    """u_t = b ∂u_t/∂n at the wall, with b the slip length: of a linear profile, u_t = u_t(y) b / (b + y).
+
+    u_t(y) is that of the material at the depth y. Along the normal it is as ``slip``. The drag draws the slip
+    towards that value, and ends where it would speed the material up: a wall only brakes. b = 0 holds the
+    material as ``stick`` does, a large b tends to ``slip``.
+    """
+
+    name = "navier-slip"
+    api_version = 2
+    citation = "Navier, Mém. Acad. R. Sci. Inst. France 6 (1823) 389-440"
+
+    slip_length: float = quantity("m", "slip length b", ge=0)
+
+    @property
+    def parity(self) -> Parity:  # type: ignore[override]
+        return "odd" if self.slip_length == 0 else "mirror"
+
+    def mapped(self, nodes: ContactNodes) -> None:
+        super().mapped(nodes)
+        self._drag(nodes)
+
+    def solved(self, nodes: ContactNodes, dt: float) -> None:
+        super().solved(nodes, dt)
+        self._drag(nodes)
+
+    def _drag(self, nodes: ContactNodes) -> None:
+        """Where the wall pushes, u_t becomes the shortest vector between what it is and what it tends to."""
+        _, slip = nodes.slip()
+        b, y = self.slip_length, nodes.depth
+        excess = slip - (b / (b + y))[:, None] * nodes.tangential(nodes.inner)
+        square = (excess * excess).sum(axis=1)
+        part = (excess * slip).sum(axis=1) / np.where(square > 0, square, 1.0)
+        pushes = nodes.touched & (nodes.memory["contact"] == 1)
+        nodes.brake(pushes, np.clip(part, 0.0, 1.0)[:, None] * excess)
+
+
+@hookimpl
+def mpmkit_contacts() -> list[type[Slip]]:
+    return [NavierSlip]

@@ -1,0 +1,81 @@
+"""The surface of a body, from inside or from outside, or a shell around it."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from mpmkit.contracts import Space, Surface, hookimpl, quantity
+from mpmkit.geometry import AnyShape, Inverted, MovingSolid
+
+from .rigid import RigidSurface
+
+
+class BodySurface(RigidSurface):
+    """The surface of any shape that a body of material may have; d is the distance to it.
+
+    From inside, the wall is around the shape and fills all the rest of space, or is a shell as thick as
+    ``thickness`` whose inner surface is that of the shape, with room for material on both sides. From
+    outside, the shape is an obstacle.
+    """
+
+    name = "body"
+    api_version = 2
+    citation = "Osher & Fedkiw, Level Set Methods and Dynamic Implicit Surfaces (2003), chapter 2"
+
+    shape: AnyShape
+    side: Literal["inside", "outside"] = Field(
+        description="where the material is: inside of the shape, or outside of it"
+    )
+    thickness: float | None = quantity(
+        "m",
+        "thickness of a shell, outwards; only inside, and default: the wall fills all the rest",
+        default=None,
+        gt=0,
+    )
+    open: list[str] | None = Field(
+        default=None,
+        description="ends that a shell leaves open: 'bottom' and 'top' of a cylinder or frustum, faces of a "
+        "box such as 'z_max'; default: both ends of a cylinder or frustum, no face of a box",
+    )
+
+    def problem(self, space: Space) -> str | None:
+        try:
+            self.shape.check(space)
+        except ValueError as error:
+            return str(error)
+        if self.side == "outside" and self.thickness is not None:
+            return (
+                f"thickness is {self.thickness:g} m, but with side 'outside' the wall is solid: leave it out"
+            )
+        if self.open is not None:
+            if self.thickness is None:
+                return f"open is {self.open}, but only a shell has ends that can be open: give its thickness"
+            if reason := self._cannot_open(space):
+                return reason
+        return super().problem(space)
+
+    def _cannot_open(self, space: Space) -> str | None:
+        ends, named = self.shape.ends(space), self.open or []
+        allowed = ", ".join(f"'{end}'" for end in ends)
+        for end in named:
+            if not ends:
+                return (
+                    f"open is {self.open}, but a {self.shape.kind} has no ends that can be open: leave it out"
+                )
+            if end not in ends:
+                return f"open is {self.open}; of this {self.shape.kind} {allowed} can be open"
+        if set(named) == set(ends) and self.shape.kind == "box":
+            return f"open is {self.open}, which leaves no wall: one face must stay closed"
+        return None
+
+    def placed(self, space: Space) -> MovingSolid:
+        if self.side == "outside":
+            return self.moving(self.shape.solid(space))
+        if self.thickness is None:
+            return self.moving(Inverted(self.shape.solid(space)))
+        return self.moving(self.shape.shell(space, self.thickness, self.open), self.thickness)
+
+
+@hookimpl
+def mpmkit_surfaces() -> list[type[Surface]]:
+    return [BodySurface]
