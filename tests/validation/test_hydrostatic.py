@@ -157,7 +157,10 @@ def test_accurate_setup_rests_as_well(validate, space):
     draw_pressure(validate, simulation, f"accurate set-up, {space}")
 
 
-@pytest.mark.parametrize(("space", "velocity"), [("plane-strain", "pic"), ("axisymmetric", "blend")])
+@pytest.mark.parametrize(
+    ("space", "velocity"),
+    [("plane-strain", "pic"), pytest.param("axisymmetric", "blend", marks=pytest.mark.slow)],
+)
 def test_dissipative_updates_rest_as_well(validate, space, velocity):
     simulation = settle(column(space, velocity=velocity))
     check_pressure(validate, simulation, f"{space}, {velocity}")

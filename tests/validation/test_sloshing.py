@@ -104,7 +104,13 @@ def test_standing_wave(validate, order):
         draw(validate, "accurate set-up, 10 cells deep", t, s)
 
 
-def test_own_pressure_stiffens_the_wave(validate):
+def test_own_pressure_stiffens_the_wave():
+    """By more than 3 % at 10 cells; how that falls with the cells, and why, is in the slow test below."""
+    assert slosh(10, **PAPER)[2] / OMEGA**2 - 1 > 0.03
+
+
+@pytest.mark.slow
+def test_own_pressure_stiffens_the_wave_the_less_the_finer_the_cells(validate):
     """Every particle its own volume and pressure: four constraints a cell that the hats cannot all meet.
 
     A cell that bends, as it does under a wave, is then strained in volume, by about k dx, and the stiffness
