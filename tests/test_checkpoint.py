@@ -375,7 +375,7 @@ def kill_again_and_again(tmp_path, times, seed):
 
 
 def test_killed_and_taken_up(tmp_path):
-    assert kill_again_and_again(tmp_path, times=2, seed=1) >= 1
+    assert kill_again_and_again(tmp_path, times=1, seed=1) == 1
 
 
 @pytest.mark.slow

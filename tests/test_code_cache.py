@@ -17,6 +17,7 @@ import pytest
 from mpmkit.kernels import code_folders
 from mpmkit.kernels.code_cache import cached_code, digest
 from mpmkit.kernels.code_folders import FOLDER, IN_USE, KEPT, MARKER, TAG, VERSIONS, forget_generations, write
+from mpmkit.kernels.fingerprint import fingerprint
 
 
 @pytest.fixture
@@ -357,6 +358,42 @@ def test_a_constant_that_changes_within_a_process_is_not_kept_as_another(monkeyp
     assert outer(1.0) == 3.0
     assert len(list(tmp_path.rglob("*.code"))) == 1
     assert cached_code(numba.njit)(changing)(1.0) == 3.0
+
+
+def next_to_nothing(x):
+    """0 for any small x where sums are rounded one by one; x where the compiler may reorder them."""
+    return (x + 1e16) - 1e16
+
+
+def test_code_of_other_compile_flags_is_another(monkeypatch, tmp_path):
+    """With ``fastmath`` the bits differ: kept code without it must not be taken for it, nor the other way."""
+    monkeypatch.setattr(code_folders, "cache_root", lambda: tmp_path)
+    found = {}
+    for time_ in ("compiled", "kept"):
+        for fastmath in (False, True, {"contract"}):
+            function = cached_code(numba.njit, fastmath=fastmath)(next_to_nothing)
+            found[time_, str(fastmath)] = function(0.3)
+            assert bool(function.stats.cache_hits) == (time_ == "kept")
+    assert found["compiled", "False"] == found["compiled", "{'contract'}"] == 0.0
+    assert found["compiled", "True"] == 0.3
+    assert all(found["kept", fastmath] == value for (_, fastmath), value in found.items())
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        {"fastmath": True},
+        {"error_model": "numpy"},
+        {"parallel": True},
+        {"boundscheck": True},
+        {"nogil": True},
+    ],
+    ids=lambda flags: next(iter(flags)),
+)
+def test_every_compile_flag_is_in_the_fingerprint(flags):
+    plain, other = (cached_code(numba.njit, **chosen)(next_to_nothing) for chosen in ({}, flags))
+    assert fingerprint(other) != fingerprint(plain)
+    assert fingerprint(cached_code(numba.njit, **flags)(next_to_nothing)) == fingerprint(other)
 
 
 def test_nothing_of_the_users_in_the_folder_of_compiled_code_is_touched(tmp_path, fresh_run):

@@ -70,7 +70,7 @@ def assert_readable(directory: Path):
 
 
 @mounting
-@pytest.mark.parametrize("size", ["120k", "400k"])
+@pytest.mark.parametrize("size", ["120k", pytest.param("400k", marks=pytest.mark.slow)])
 def test_a_disk_that_fills_up(tmp_path, size):
     """A few files of a run fit, and no more; where none fits is tested below, file by file."""
     place = tmp_path / "disk"

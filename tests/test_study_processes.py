@@ -102,7 +102,7 @@ def test_as_many_at_once_as_the_cores_hold(tmp_path, monkeypatch):
     assert 1 <= cores() <= os.cpu_count()
 
 
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sent", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_an_interrupted_study_keeps_what_has_finished_and_goes_on_from_there(tmp_path, scratch, sent):
     file = tmp_path / "s.json"
     content = {"case": CASE, "members": {"short": {}, "long": {"until": 1e4}, "next": {"until": 0.01}}}

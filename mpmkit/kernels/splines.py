@@ -25,8 +25,8 @@ def spline(x):
 
 
 @kernel()
-def fill_splines(x, inverse, base, weight, gradient):
-    """Weights ``(n, dim, 3)`` and slopes, 1/m, of the quadratic B-spline: a hat averaged over one spacing.
+def fill_splines(x, inverse, base, weight):
+    """Weights ``(n, dim, 3)`` of the quadratic B-spline: a hat averaged over one spacing.
 
     ``inverse`` is one over the spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
     """
@@ -34,10 +34,7 @@ def fill_splines(x, inverse, base, weight, gradient):
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             for a in range(dim):
-                base[p, a], weight[p, a, 0], weight[p, a, 1], weight[p, a, 2], d = spline(x[p, a] * inverse)
-                gradient[p, a, 0] = (d - 0.5) * inverse
-                gradient[p, a, 1] = -2 * d * inverse
-                gradient[p, a, 2] = (d + 0.5) * inverse
+                base[p, a], weight[p, a, 0], weight[p, a, 1], weight[p, a, 2], _ = spline(x[p, a] * inverse)
 
 
 @kernel()
@@ -58,31 +55,41 @@ def fill_parts(x, half_size, inverse, base, part):
 
 @cache
 def gather_slope(dim: int):
-    """The kernel that takes Σ ∇N value of a nodal field to the particles, into ``slope (n, dim)``, 1/m."""
+    """The kernel that takes Σ ∇N value of a nodal field to the particles, into ``slope (n, dim)``, 1/m.
+
+    The distance d from the middle node, in spacings, is the difference of the outer weights, so that the
+    slopes of the splines need no table: d - 1/2, -2 d and d + 1/2, over the spacing.
+    """
+    along = dim - 1
 
     @kernel()
-    def gather_slope(field, strides, lower, base, weight, gradient, slope):
+    def gather_slope(field, strides, lower, base, weight, inverse, slope):
         n, planes = len(base), SUPPORT if dim == 3 else 1
         for chunk in prange(chunk_count(n)):
+            gradient = np.empty((3, SUPPORT))
             for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
                 first = 0
                 for d in range(dim):
                     first += (base[p, d] - lower[d]) * strides[d]
+                    off = weight[p, d, 2] - weight[p, d, 0]
+                    gradient[d, 0] = (off - 0.5) * inverse
+                    gradient[d, 1] = -2 * off * inverse
+                    gradient[d, 2] = (off + 0.5) * inverse
                 sx = sy = sz = 0.0
                 for a in range(SUPPORT):
                     for b in range(planes):
                         row = first + a * strides[0] + b * strides[1]
-                        along = across = 0.0
+                        value = change = 0.0
                         for c in range(SUPPORT):
-                            along += weight[p, dim - 1, c] * field[row + c]
-                            across += gradient[p, dim - 1, c] * field[row + c]
+                            value += weight[p, along, c] * field[row + c]
+                            change += gradient[along, c] * field[row + c]
                         if dim == 3:
-                            sx += gradient[p, 0, a] * weight[p, 1, b] * along
-                            sy += weight[p, 0, a] * gradient[p, 1, b] * along
-                            sz += weight[p, 0, a] * weight[p, 1, b] * across
+                            sx += gradient[0, a] * weight[p, 1, b] * value
+                            sy += weight[p, 0, a] * gradient[1, b] * value
+                            sz += weight[p, 0, a] * weight[p, 1, b] * change
                         else:
-                            sx += gradient[p, 0, a] * along
-                            sy += weight[p, 0, a] * across
+                            sx += gradient[0, a] * value
+                            sy += weight[p, 0, a] * change
                 slope[p, 0], slope[p, 1] = sx, sy
                 if dim == 3:
                     slope[p, 2] = sz

@@ -28,7 +28,7 @@ PASSING = 4
 """Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
 """A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
-MIRRORED = 5
+MIRRORED = 4
 """Doubles of a node of a lattice of a redistribution: its sums, its crowding, and its room."""
 COPY = 1.125
 """Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
@@ -84,7 +84,7 @@ def _redistributed(case: Case) -> int:
     if not redistributes(case.scheme.redistribution):
         return 0
     dim = case.space_.dim
-    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * 2 * dim * SUPPORT, 2 * dim, 4
+    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * dim * SUPPORT, 2 * dim, 4
     return INDEX * bases + DOUBLE * (splines + shift_and_slope + numbers)
 
 

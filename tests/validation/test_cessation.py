@@ -15,7 +15,13 @@ AT_REST = {0.0: 0.409, 0.2: 0.696}
 """Time of arrest, s, of the unit Bingham fluid that flowed at G = 1, by what is left of the drive."""
 
 
-@pytest.mark.parametrize(("drive", "m", "at_rest"), [(0.0, 500.0, AT_REST[0.0]), (0.2, 500.0, AT_REST[0.2])])
+REGULARISED = [
+    (0.0, 500.0, AT_REST[0.0]),
+    pytest.param(0.2, 500.0, AT_REST[0.2], marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("drive", "m", "at_rest"), REGULARISED)
 def test_regularised_fluid_nearly_stops(validate, drive, m, at_rest):
     """Started from the profile of G = 1. A regularised fluid creeps where the exact one has stopped.
 

@@ -104,7 +104,13 @@ def test_standing_wave(validate, order):
         draw(validate, "accurate set-up, 10 cells deep", t, s)
 
 
-def test_own_pressure_stiffens_the_wave(validate):
+def test_own_pressure_stiffens_the_wave():
+    """By more than 3 % at 10 cells; how that falls with the cells, and why, is in the slow test below."""
+    assert slosh(10, **PAPER)[2] / OMEGA**2 - 1 > 0.03
+
+
+@pytest.mark.slow
+def test_own_pressure_stiffens_the_wave_the_less_the_finer_the_cells(validate):
     """Every particle its own volume and pressure: four constraints a cell that the hats cannot all meet.
 
     A cell that bends, as it does under a wave, is then strained in volume, by about k dx, and the stiffness
@@ -120,7 +126,8 @@ def test_own_pressure_stiffens_the_wave(validate):
     validate(name, excess[0] / excess[1], close_to(4.0, rel=0.1))
 
 
-def test_a_tank_that_swings_for_long_keeps_its_volume(validate):
+@pytest.mark.parametrize("periods", [3, pytest.param(14, marks=pytest.mark.slow)])
+def test_a_tank_that_swings_for_long_keeps_its_volume(validate, periods):
     """A wave of a fifth of the depth, 14 periods long: J hears of where particles are, and holds them apart.
 
     With J that is drawn to its average alone it has sunk to 0.89 by then, and without splitting to 0.6.
@@ -129,10 +136,10 @@ def test_a_tank_that_swings_for_long_keeps_its_volume(validate):
     p = simulation.particles
     p.velocity *= 0.1 / AMPLITUDE
     lowest = math.inf
-    for period in range(1, 15):
+    for period in range(1, periods + 1):
         while simulation.time < period * 2 * math.pi / OMEGA:
             simulation.advance()
         height = float(np.average(p.position[:, 1], weights=p.mass)) / (DEPTH / 2)
         lowest = min(lowest, height)
-    name = "A tank in 14 periods: least height of its centre of mass over that at rest"
+    name = f"A tank in {periods} periods: least height of its centre of mass over that at rest"
     validate(name, lowest, close_to(1.0, rel=0.02))

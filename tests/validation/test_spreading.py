@@ -49,7 +49,7 @@ def disc(radius, height, viscosity, floor, cells, far, factor, **numerics):
 
 # USL bears half of the viscous limit inside a body; at a free edge it bears less.
 SCHEMES = [
-    pytest.param(PAPER | {"time_step": {"fraction": 0.25}}, id="paper"),
+    pytest.param(PAPER | {"time_step": {"fraction": 0.25}}, id="paper", marks=pytest.mark.slow),
     pytest.param(scheme(), id="accurate"),
 ]
 

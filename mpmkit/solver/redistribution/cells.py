@@ -47,15 +47,7 @@ class BoxCells:
 
     def least_beside(self, filling: np.ndarray) -> np.ndarray:
         require_field(filling, self.block.count, "cells")
-        block = filling.reshape(self.block.shape)
-        least = block.copy()
-        for axis in range(self._dim):
-            along, lowest = np.moveaxis(block, axis, 0), np.moveaxis(least, axis, 0)
-            lowest[:-1] = np.minimum(lowest[:-1], along[1:])
-            lowest[1:] = np.minimum(lowest[1:], along[:-1])
-        least = least.ravel()
-        self.block.fill(least)
-        return least
+        return self.block.least_beside(filling)
 
     def at_particles(self, values: np.ndarray) -> np.ndarray:
         block, field, out = self.block, self.block.field(values), np.empty(len(self._base))

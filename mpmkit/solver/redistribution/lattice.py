@@ -28,8 +28,8 @@ class SplineLattice:
         self.spacing = block.spacing
         self._tasks, self._size = tasks, size
         self._base = np.empty((n, dim), dtype=np.int32)
-        self._weight, self._gradient = np.empty((2, n, dim, SUPPORT))
-        fill_splines(position, 1 / block.spacing, self._base, self._weight, self._gradient)
+        self._weight = np.empty((n, dim, SUPPORT))
+        fill_splines(position, 1 / block.spacing, self._base, self._weight)
 
     def crowding(self) -> np.ndarray:
         crowding = self._sums(self._size, self._size)[:, 0] / self.block.room
@@ -55,7 +55,7 @@ class SplineLattice:
         block, slope = self.block, np.empty(self._base.shape)
         field = block.field(nodal)[:, 0]
         gather_slope(self._dim)(
-            field, block.strides, block.lower, self._base, self._weight, self._gradient, slope
+            field, block.strides, block.lower, self._base, self._weight, 1 / block.spacing, slope
         )
         return slope
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ...errors import PluginFault
+from ...kernels import neighbours
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.vectors import LANES
 from ...registry import audit
@@ -111,13 +113,19 @@ class Mirrored:
 
     def least_around(self, values: np.ndarray) -> np.ndarray:
         """The least of each and all its neighbours, corners included; what is not stored counts 0."""
-        least = np.pad(values.reshape(self.shape), 1)
-        for axis in range(self.grid.dim):
-            along = np.moveaxis(least, axis, 0)
-            along[1:-1] = np.minimum(np.minimum(along[:-2], along[1:-1]), along[2:])
-        least = least[(slice(1, -1),) * self.grid.dim].ravel()
-        self.fill(least)
-        return least
+        return self._least(neighbours.least_around, values)
+
+    def least_beside(self, values: np.ndarray) -> np.ndarray:
+        """The least of each and those that share a face with it."""
+        return self._least(neighbours.least_beside, values)
+
+    def _least(self, kernel: Callable[[np.ndarray, np.ndarray], None], values: np.ndarray) -> np.ndarray:
+        block = np.ascontiguousarray(values, dtype=np.float64).reshape(self.shape[0], -1, self.shape[-1])
+        least = np.empty_like(block)
+        kernel(block, least)
+        found = least.ravel()
+        self.fill(found)
+        return found
 
     def _ghost_planes(self) -> list[tuple[tuple, tuple]]:
         """Index of each plane behind the faces, with that of its image."""

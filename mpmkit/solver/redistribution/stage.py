@@ -7,7 +7,7 @@ import numpy as np
 from ...case.model import Scheme
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
-from ...kernels import domains
+from ...kernels import domains, shifts
 from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.tensors import shear_rate
@@ -159,15 +159,14 @@ class Stage:
             p.volume[part] = p.initial_volume[part] * p.volume_ratio[part]
 
     def shift(self, displacement: np.ndarray) -> None:
-        p, before = self._particles, self._particles.position.copy()
-        self._require(displacement, "a displacement", before.shape)
+        p = self._particles
+        self._require(displacement, "a displacement", p.position.shape)
+        displacement = np.ascontiguousarray(displacement, dtype=np.float64)
         low, high = self._kept_from_walls()
+        change = np.zeros((len(p), p.affine.shape[1]))
         for part in self._fluids():
-            moved = displacement[part] != 0  # others stay where they are, to the bit
-            shifted = np.minimum(np.maximum(p.position[part] + displacement[part], low), high)
-            np.copyto(p.position[part], shifted, where=moved)
+            shifts.shift(p.position[part], displacement[part], low, high, p.affine[part], change[part])
         if p.affine.shape[1]:
-            change = (p.affine @ (p.position - before)[:, :, None])[:, :, 0]
             for axis in range(p.dim):
                 along = np.ascontiguousarray(change[:, axis])
                 # What a node gains is taken from all around it, so that no momentum is made.

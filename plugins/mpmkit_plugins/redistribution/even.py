@@ -1,8 +1,10 @@
 """Volume, box and place of sheared particles made to say the same."""
 
 import numpy as np
+from numba import prange
 
 from mpmkit.contracts import GeneralisedNewtonianLaw, Redistributing, Redistribution, hookimpl
+from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 
 DUE = 0.1
 """Shear ∫ γ̇ dt between two corrections."""
@@ -92,20 +94,39 @@ def _shift(
     departure = np.clip(fine.crowding() - 1, -1.0, 1.0)
     departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
     shift = fine.slope_at_particles(departure)
-    shift *= (-RATE * time * h * h * ops.nodes.at_particles(rate))[:, None]
-    shift = _kept_in(ops, crowding, shift)
-    longest = np.abs(shift).max(axis=1, keepdims=True)
-    return shift * np.minimum(1.0, LONGEST * h / np.maximum(longest, 1e-300))
+    factor = -RATE * time * h * h * ops.nodes.at_particles(rate)
+    slope, there = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding)
+    _limit(factor, slope, there, ops.nodes.spacing, LONGEST * h, shift)
+    return shift
 
 
-def _kept_in(ops: Redistributing, crowding: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """The shift without its part down the crowding, for particles near the surface."""
-    slope = ops.nodes.spacing * ops.nodes.slope_at_particles(crowding)
-    steepness = np.einsum("pi,pi->p", slope, slope)
-    near = (steepness > STEEP**2) | (ops.nodes.at_particles(crowding) < LOOSE)
-    outwards = np.einsum("pi,pi->p", shift, slope)
-    taken = np.where(near & (outwards < 0), outwards / np.maximum(steepness, 1e-300), 0.0)
-    return shift - taken[:, None] * slope
+@kernel()
+def _limit(factor, slope, crowding, spacing, longest, shift):
+    """shift ← factor shift, near the surface without its part down the crowding, and not too long.
+
+    Args:
+        factor, crowding: ``(n,)``.
+        slope: ``(n, dim)``, 1/m, of the crowding.
+        spacing, longest: m.
+        shift: ``(n, dim)``, m; its largest component is no more than ``longest`` afterwards.
+    """
+    n, dim = shift.shape
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            steepness = outwards = 0.0
+            for d in range(dim):
+                shift[p, d] *= factor[p]
+                steepness += (spacing * slope[p, d]) ** 2
+                outwards += shift[p, d] * spacing * slope[p, d]
+            near = steepness > STEEP**2 or crowding[p] < LOOSE
+            taken = outwards / max(steepness, 1e-300) if near and outwards < 0.0 else 0.0
+            most = 0.0
+            for d in range(dim):
+                shift[p, d] -= taken * spacing * slope[p, d]
+                most = max(most, abs(shift[p, d]))
+            part = min(1.0, longest / max(most, 1e-300))
+            for d in range(dim):
+                shift[p, d] *= part
 
 
 def _weights(ops: Redistributing) -> np.ndarray:

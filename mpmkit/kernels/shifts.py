@@ -1,0 +1,35 @@
+"""Particles that are shifted, and what their velocity is where they come to."""
+
+from __future__ import annotations
+
+from numba import prange
+
+from .compile import CHUNK, chunk_count, kernel
+
+
+@kernel()
+def shift(position, displacement, low, high, affine, change):
+    """x ← min(max(x + δx, low), high), and the change C δx of the velocity by its affine part C, 1/s.
+
+    Who is not shifted stays where it is, to the bit, be it beyond ``low`` or ``high``.
+
+    Args:
+        position, displacement: ``(n, dim)``, m.
+        low, high: ``(dim,)``, m.
+        affine: ``(n, dim, dim)``, 1/s; without columns there is no affine part.
+        change: ``(n, dim)``, m/s, of the velocity; written where there is an affine part.
+    """
+    n, dim = position.shape
+    has_affine = affine.shape[1] > 0
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            if has_affine:
+                for i in range(dim):
+                    change[p, i] = 0.0
+            for d in range(dim):
+                if displacement[p, d] != 0.0:
+                    before = position[p, d]
+                    position[p, d] = min(max(before + displacement[p, d], low[d]), high[d])
+                    if has_affine:
+                        for i in range(dim):
+                            change[p, i] += affine[p, i, d] * (position[p, d] - before)
