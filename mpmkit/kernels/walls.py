@@ -1,22 +1,24 @@
 """Walls that stand anywhere: nodes at which they act, ghosts beyond them, and what passes between the two.
 
-A node is *at* a wall if it is within half a cell of it, to either side; there is one for each cell of wall,
-however the wall lies. The velocity of the material at the wall is taken along the normal, through the node
-and an image one cell further in,
+A node is *at* a wall if it is within half a cell of it, to either side: there is one for each cell of wall,
+however the wall lies. The velocity of the material at the wall is that of the line through the node and an
+image, one cell further in along the normal,
 
-    v_wall = a v_node + b v_image,   a = D / (D - d),  b = -d / (D - d),  D = d + Δx,
+    v_wall = a v_node + b v_image,   a = 1 + d,  b = -d,
 
-with the signed distance d of the node and D of the image, whose velocity is interpolated between the nodes
-around it. What a wall does is an impulse at that place, which the nodes share by the same weights C_n: the
-change C_n λ / m_n of each is the smallest, measured by the energy in it, that gives the velocity at the wall
-its due. A wall on the nodes has a = 1, b = 0, and holds the nodes themselves.
+with the signed distance d of the node, in cells; the velocity of the image is interpolated between the nodes
+around it. What a wall does is an impulse λ at that place. The nodes share it by the same weights C: the change
+C λ / m of each is the smallest, measured by its energy, that gives the velocity at the wall its due. A wall
+that lies on the nodes has a = 1 and b = 0, and acts on these nodes alone.
 
 A *ghost* is a node more than half a cell behind the wall. It continues the velocity as the mirrored scene
 would, v_ghost = w + R (v_image - w), with the image at the same distance in front of the wall. What particles
-put on it is folded onto the nodes around the image with the weights with which it is filled back: the two are
-transposes of each other. R turns the normal part round (mirror), or all of it (odd).
+put on it is folded onto the nodes around the image with the weights by which it is filled back: the two are
+transposes of each other. R reverses the normal part (mirror), or all of it (odd). Averages of scalars fold and
+fill all nodes behind the wall in the same way.
 
-``nodes`` is (count, NODE), see ``scatter``. Loops are short, since walls are surfaces, and run in one thread.
+What was tried otherwise, and what it gave, is in docs/findings.md. Walls are surfaces: there are few nodes at
+them, and these loops run in one thread.
 """
 
 from __future__ import annotations
@@ -24,20 +26,17 @@ from __future__ import annotations
 import numpy as np
 
 from .compile import function
-from .scatter import NODE
 
-import os
-SYM = os.environ.get("SYM", "1") == "1"
-FOLD = os.environ.get("FOLD", "1") == "1"
 FAR = 1e300
 """Distance of nodes that are not near a wall."""
-GHOST = 2.0
-AT = float(os.environ.get("BETA", "0.25"))
+AT, GHOST = 0.5, 2.0
 """Cells from a wall within which a node is at it, and behind it within which it can be a ghost."""
 NEAR = 2.8
 """Cells from a wall within which a particle may lie so that nodes of its cell must know their distance."""
 TOUCH = 0.02
 """Cells from a wall within which a box touches it."""
+LEAST, NONE = 0.1, -1.0
+"""Least weight of the nodes around an image that particles can reach; the first weight where there is less."""
 
 
 @function()
@@ -63,8 +62,9 @@ def _corners(place, lower, shape, strides, active, taken, index, weight):
         else:
             index[k], weight[k] = at, w
             total += w
-    if total < 0.1:
+    if total < LEAST:
         weight[:] = 0.0
+        weight[0] = NONE
         return False
     for k in range(1 << dim):
         weight[k] /= total
@@ -92,11 +92,11 @@ def find_nodes(at, number, distance, normal, lower, shape, strides, active, take
     count = ghosts = 0
     for k in range(len(at)):
         if active[at[k]]:
-            if -GHOST < distance[k] <= AT - 1.0:
+            if -GHOST < distance[k] <= -AT:
                 ghost[ghosts] = k
                 ghosts += 1
                 taken[at[k]] = True
-            elif AT - 1.0 < distance[k] <= AT:
+            elif -AT < distance[k] <= AT:
                 at_wall[count] = k
                 count += 1
     place = np.empty(dim)
@@ -114,6 +114,53 @@ def find_nodes(at, number, distance, normal, lower, shape, strides, active, take
 
 
 @function()
+def _distance(x, inverse, lower, strides, distance, slope):
+    """Distance of a place from the wall, in cells, and its slope along each axis (out); ``FAR`` if it is far.
+
+    It is interpolated between the nodes of the cell.
+    """
+    dim = len(x)
+    first = 0
+    for a in range(dim):
+        first += (int(np.floor(x[a] * inverse)) - lower[a]) * strides[a]
+    if not distance[first] < NEAR:
+        return FAR
+    d = 0.0
+    slope[:] = 0.0
+    for k in range(1 << dim):
+        at, w = first, 1.0
+        for a in range(dim):
+            part = x[a] * inverse - np.floor(x[a] * inverse)
+            at += (k >> a & 1) * strides[a]
+            w *= part if k >> a & 1 else 1.0 - part
+        d += w * distance[at]
+        for a in range(dim):
+            s = distance[at] if k >> a & 1 else -distance[at]
+            for e in range(dim):
+                if e != a:
+                    part = x[e] * inverse - np.floor(x[e] * inverse)
+                    s *= part if k >> e & 1 else 1.0 - part
+            slope[a] += s
+    return d
+
+
+@function()
+def keep_out(position, cell_size, lower, strides, distance):
+    """Put particles that have come into the wall back to its surface, along the normal; how many."""
+    inverse, count = 1 / cell_size, 0
+    slope = np.empty(position.shape[1])
+    for p in range(len(position)):
+        d = _distance(position[p], inverse, lower, strides, distance, slope)
+        if d < 0.0:
+            square = (slope * slope).sum()
+            if square > 0.25:  # in the middle of a thin wall no side is nearer
+                for a in range(len(slope)):
+                    position[p, a] -= d * slope[a] / square * cell_size
+                count += 1
+    return count
+
+
+@function()
 def mark_touched(position, half_size, inverse, base, weight, lower, strides, distance, touched):
     """Mark the nodes on which a particle has weight whose box reaches the wall.
 
@@ -123,152 +170,101 @@ def mark_touched(position, half_size, inverse, base, weight, lower, strides, dis
     """
     n, dim = position.shape
     support = weight.shape[2]
+    planes = support if dim == 3 else 1
     slope = np.empty(dim)
     for p in range(n):
-        first = 0
-        for a in range(dim):
-            first += (int(np.floor(position[p, a] * inverse)) - lower[a]) * strides[a]
-        if not distance[first] < NEAR:
-            continue
-        d = 0.0
-        slope[:] = 0.0
-        for k in range(1 << dim):
-            at, w = first, 1.0
-            for a in range(dim):
-                part = position[p, a] * inverse
-                part -= np.floor(part)
-                bit = k >> a & 1
-                at += bit * strides[a]
-                w *= part if bit else 1.0 - part
-            d += w * distance[at]
-            for a in range(dim):
-                s = 1.0 if k >> a & 1 else -1.0
-                for e in range(dim):
-                    if e != a:
-                        part = position[p, e] * inverse
-                        part -= np.floor(part)
-                        s *= part if k >> e & 1 else 1.0 - part
-                slope[a] += s * distance[at]
+        d = _distance(position[p], inverse, lower, strides, distance, slope)
         reach = TOUCH
         for a in range(dim):
             reach += half_size[p, a] * inverse * abs(slope[a])
-        if d > reach:
+        if not d <= reach:
             continue
         first = 0
         for a in range(dim):
             first += (base[p, a] - lower[a]) * strides[a]
         for i in range(support):
-            if weight[p, 0, i] <= 0.0:
-                continue
-            for j in range(support):
-                if weight[p, 1, j] <= 0.0:
-                    continue
-                row = first + i * strides[0] + j * strides[1]
-                if dim == 2:
-                    touched[row] = 1
-                else:
-                    for l in range(support):
-                        if weight[p, 2, l] > 0.0:
-                            touched[row + l] = 1
+            for j in range(planes):
+                row = first + i * strides[0] + j * strides[1] * (dim - 2)
+                w = weight[p, 0, i] * (weight[p, 1, j] if dim == 3 else 1.0)
+                for k in range(support):
+                    if w * weight[p, dim - 1, k] > 0.0:
+                        touched[row + k] = 1
 
 
 @function()
-def _reflect(vector, normal, odd):
-    """R v in place: the normal part turned round, or all of it."""
+def _reflect(vector, m, w, normal, odd, out):
+    """out = m w + R (vector - m w): the part against the wall reversed along the normal, or all of it."""
     along = 0.0
     for a in range(len(normal)):
-        along += vector[a] * normal[a]
+        along += (vector[a] - m * w[a]) * normal[a]
     for a in range(len(normal)):
-        vector[a] = -vector[a] if odd else vector[a] - 2.0 * along * normal[a]
+        out[a] = 2.0 * m * w[a] - vector[a] if odd else vector[a] - 2.0 * along * normal[a]
 
 
 @function()
 def fold(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, momentum, forces, held):
     """Add what lies on touched ghosts to the nodes around their images, and clear the ghosts.
 
-    ``held`` (k, 1 + dim) keeps the mass and the force of each for its share in the force of the wall.
+    ``held`` (k, 1 + 2 dim) keeps mass, momentum and force of each, for its share in the force of the wall.
     """
     dim = normal.shape[1]
-    v, f = np.empty(dim), np.empty(dim)
+    first, last = 0 if momentum else 1 + dim, 1 + (2 if forces else 1) * dim
+    v, f, none = np.empty(dim), np.empty(dim), np.zeros(dim)
     for k in ghost:
         g = at[k]
-        if momentum:
-            held[k, 0] = 0.0
-        if forces:
-            held[k, 1:] = 0.0
-        if not touched[g] or weight[k].sum() == 0.0:
+        held[k, first:last] = 0.0
+        if not touched[g] or weight[k, 0] < 0.0:
             continue
-        m = nodes[g, 0]
+        for q in range(first, last):
+            held[k, q] = nodes[g, q]
+            nodes[g, q] = 0.0
+        m = held[k, 0]
         if momentum:
-            held[k, 0] = m
-            for a in range(dim):
-                v[a] = nodes[g, 1 + a] - m * wall_velocity[k, a]
-            _reflect(v, normal[k], odd)
-            for a in range(dim):
-                v[a] += m * wall_velocity[k, a]
+            _reflect(held[k, 1 : 1 + dim], m, wall_velocity[k], normal[k], odd, v)
         if forces:
-            for a in range(dim):
-                f[a] = held[k, 1 + a] = nodes[g, 1 + dim + a]
-            _reflect(f, normal[k], odd)
-            if not FOLD:
-                f[:] = 0.0
+            _reflect(held[k, 1 + dim :], 0.0, none, normal[k], odd, f)
         for c in range(index.shape[1]):
-            w = weight[k, c]
-            if w > 0.0:
-                i = index[k, c]
-                if momentum and FOLD:
-                    nodes[i, 0] += w * m
-                    for a in range(dim):
-                        nodes[i, 1 + a] += w * v[a]
-                if forces:
-                    for a in range(dim):
-                        nodes[i, 1 + dim + a] += w * f[a]
-        if momentum:
-            for q in range(1 + dim):
-                nodes[g, q] = 0.0
-        if forces:
-            for q in range(1 + dim, 1 + 2 * dim):
-                nodes[g, q] = 0.0
+            w, i = weight[k, c], index[k, c]
+            if momentum:
+                nodes[i, 0] += w * m
+                for a in range(dim):
+                    nodes[i, 1 + a] += w * v[a]
+            if forces:
+                for a in range(dim):
+                    nodes[i, 1 + dim + a] += w * f[a]
 
 
 @function()
 def fill(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, solved, dt, held, impulse):
     """Give touched ghosts the velocity of their images, mirrored; the transpose of ``fold``.
 
-    Once ``solved``, ``impulse`` (k, dim) gets what the wall gave by each ghost: m_g (Δv_g - Δv_image) +
-    dt (R - 1) f_g, N s.
+    ``impulse`` (k, dim) gets what the wall has given by each ghost, N s, with m, p and f of the ghost: in
+    mapping m (v_ghost - v_image) + R p - p, and once ``solved`` m (Δv_ghost - Δv_image) + dt (R f - f).
     """
     dim = normal.shape[1]
-    v, change = np.empty(dim), np.empty(dim)
+    v, change, folded, none = np.empty(dim), np.empty(dim), np.empty(dim), np.zeros(dim)
     for k in ghost:
         g = at[k]
-        if not touched[g] or weight[k].sum() == 0.0:
+        impulse[k, :] = 0.0
+        if not touched[g] or weight[k, 0] < 0.0:
             continue
         v[:] = 0.0
         change[:] = 0.0
         for c in range(index.shape[1]):
-            w = weight[k, c]
-            if w > 0.0:
-                for a in range(dim):
-                    v[a] += w * nodes[index[k, c], 1 + a]
-                    change[a] += w * nodes[index[k, c], 1 + dim + a]
-        for a in range(dim):
-            v[a] -= wall_velocity[k, a]
-        _reflect(v, normal[k], odd)
-        for a in range(dim):
-            nodes[g, 1 + a] = v[a] + wall_velocity[k, a]
+            for a in range(dim):
+                v[a] += weight[k, c] * nodes[index[k, c], 1 + a]
+                change[a] += weight[k, c] * nodes[index[k, c], 1 + dim + a]
+        m = held[k, 0]
+        _reflect(v, 1.0, wall_velocity[k], normal[k], odd, nodes[g, 1 : 1 + dim])
         if solved:
+            _reflect(change, 0.0, none, normal[k], odd, nodes[g, 1 + dim : 1 + 2 * dim])
+            _reflect(held[k, 1 + dim :], 0.0, none, normal[k], odd, folded)
             for a in range(dim):
-                impulse[k, a] = -held[k, 0] * change[a]
-            _reflect(change, normal[k], odd)
+                impulse[k, a] = m * (nodes[g, 1 + dim + a] - change[a]) + dt * (folded[a] - held[k, 1 + dim + a])
+        else:
+            _reflect(held[k, 1 : 1 + dim], m, wall_velocity[k], normal[k], odd, folded)
             for a in range(dim):
-                nodes[g, 1 + dim + a] = change[a]
-                impulse[k, a] += held[k, 0] * change[a] - dt * held[k, 1 + a]
-            for a in range(dim):
-                change[a] = held[k, 1 + a]
-            _reflect(change, normal[k], odd)
-            for a in range(dim):
-                impulse[k, a] += dt * change[a]
+                impulse[k, a] = m * (nodes[g, 1 + a] - v[a]) + folded[a] - held[k, 1 + a]
 
 
 @function()
@@ -293,7 +289,7 @@ def at_wall_velocities(nodes, at_wall, at, distance, normal, index, weight, free
         if not nodes[g, 0] > 0.0:
             continue
         total = 0.0
-        for c in range(corners):
+        for c in range(corners):  # no weight is above 0 where there is no image
             if weight[k, c] > 0.0 and nodes[index[k, c], 0] > 0.0:
                 total += weight[k, c]
         d = distance[k]
@@ -316,7 +312,7 @@ def at_wall_velocities(nodes, at_wall, at, distance, normal, index, weight, free
             if part > 0.0:
                 if i == g:
                     own += b * part
-                elif SYM:
+                else:
                     for e in range(dim):
                         if free[i] >> e & 1:
                             stiffness[count, e] += (b * part) ** 2 / nodes[i, 0]
@@ -334,8 +330,6 @@ def _give(nodes, g, index, share, free, dim, impulse, solved):
     for c in range(len(share)):
         if share[c] != 0.0:
             i = g if c == 0 else index[c - 1]
-            if not SYM and i != g:
-                continue
             for e in range(dim):
                 if free[i] >> e & 1:
                     change = share[c] * impulse[e] / nodes[i, 0]
@@ -355,7 +349,9 @@ def _velocity(nodes, g, index, share, dim, velocity):
 
 
 @function()
-def push(nodes, acting, at, normal, index, free, share, stiffness, before, after, whole, pulls, sweeps, solved, impulse):
+def push(
+    nodes, acting, at, normal, index, free, share, stiffness, before, after, whole, pulls, sweeps, solved, impulse
+):
     """Give the nodes the impulses that change the velocities at the wall from ``before`` to ``after``.
 
     Nodes share neighbours, so that one impulse disturbs the next: what the wall holds is put right in some
@@ -454,3 +450,27 @@ def fill_average(average, behind, at, index, weight, touched, held):
     for k in behind:
         if touched[at[k]]:
             average[at[k], 0] = held[k, 0]
+
+
+@function()
+def add_up(impulse, nodes, place, distance, normal, wall_velocity, sums):
+    """Add impulses (n, dim), N s, of some ``nodes`` to the sums of a wall: itself, its moment, its work.
+
+    The moment is about the origin of the scene, N m s: x × λ in 3-D, and its part out of the plane, about
+    the axis y, in two dimensions. The work is λ·w, J.
+    """
+    dim = impulse.shape[1]
+    turns = len(sums) - dim - 1
+    x = np.empty(dim)
+    for j in range(len(nodes)):
+        k = nodes[j]
+        for a in range(dim):
+            x[a] = place[k, a] - distance[k] * normal[k, a]
+            sums[a] += impulse[j, a]
+            sums[dim + turns] += impulse[j, a] * wall_velocity[k, a]
+        if dim == 2:
+            sums[dim] += x[1] * impulse[j, 0] - x[0] * impulse[j, 1]
+        else:
+            for a in range(3):
+                b, c = (a + 1) % 3, (a + 2) % 3
+                sums[3 + a] += x[b] * impulse[j, c] - x[c] * impulse[j, b]

@@ -32,6 +32,7 @@ class History:
         attributes: global attributes of the dataset; may be added to until the last write.
         axes: names of the axes of the space, such as ``("r", "z")``.
         particle_variables: the particle fields that a row may hold.
+        walls: names of the walls, of which some columns have an entry each.
     """
 
     def __init__(
@@ -40,10 +41,12 @@ class History:
         attributes: dict[str, Any],
         axes: Sequence[str],
         particle_variables: Mapping[str, ParticleVariable] = PARTICLE_VARIABLES,
+        walls: Sequence[str] = (),
     ) -> None:
         self.attributes = attributes
         self._columns = {column.name: column for column in columns}
         self._axes = tuple(axes)
+        self._walls = tuple(walls)
         self._variables = particle_variables
         self._times: list[float] = []
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
@@ -107,8 +110,10 @@ class History:
 
         variables: dict[str, tuple] = {}
         for name, column in self._columns.items():
-            trailing = ("component",) if column.component else ()
-            shape = (len(self), len(self._axes)) if column.component else (len(self),)
+            sizes = {"wall": len(self._walls)} if column.of_walls else {}
+            sizes |= {"component": len(self._axes)} if column.component else {}
+            sizes |= {"about": len(column.about)} if column.about else {}
+            trailing, shape = tuple(sizes), (len(self), *sizes.values())
             attributes = {"units": column.units, "long_name": column.long_name}
             variables[name] = (
                 ("time", *trailing),
@@ -130,7 +135,10 @@ class History:
         def coordinate(dimension: str, labels: Sequence, long_name: str) -> tuple:
             return dimension, np.array(labels), {"units": "1", "long_name": long_name}
 
+        about = next((column.about for column in self._columns.values() if column.about), ())
         labels = {
+            "wall": coordinate("wall", self._walls, "name of the wall"),
+            "about": coordinate("about", about, "axis of the torque"),
             "component": coordinate("component", self._axes, "axis"),
             "tensor_component": coordinate("tensor_component", tensor_components(self._axes), "pair of axes"),
             "particle": coordinate(

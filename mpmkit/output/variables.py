@@ -8,12 +8,17 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Variable:
-    """A column of the history: a number, or with ``component`` a vector along the axes of the space."""
+    """A column of the history: a number, or with ``component`` a vector along the axes of the space.
+
+    One ``of_walls`` has such an entry for each wall; one ``about`` axes has a component for each of them.
+    """
 
     name: str
     units: str
     long_name: str
     component: bool = False
+    of_walls: bool = False
+    about: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,16 @@ COLUMNS = (
 """The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""
 
 
+def wall_columns(axes: tuple[str, ...]) -> tuple[Variable, ...]:
+    """The columns of the walls; a torque is about the axes of 3-D, or about the one out of the plane."""
+    about = axes if len(axes) == 3 else ("t" if axes[0] == "r" else "y",)
+    return (
+        Variable("wall_force", "N", "force of the wall on the material", component=True, of_walls=True),
+        Variable("wall_torque", "N m", "torque of the wall about the origin", of_walls=True, about=about),
+        Variable("wall_power", "W", "power that the wall gives to the material", of_walls=True),
+    )
+
+
 class Recorder:
     """Adds to the history of a simulation, and to its frames if it has a run directory.
 
@@ -62,7 +72,10 @@ class Recorder:
         self.simulation = simulation
         self.directory = directory
         variables = PARTICLE_VARIABLES | state_variables(case)
-        self.history = History(COLUMNS, attributes, case.space_.axes, variables)
+        axes, walls = case.space_.axes, tuple(case.walls)
+        columns = COLUMNS + (wall_columns(axes) if walls else ())
+        self.history = History(columns, attributes, axes, variables, walls)
+        self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
@@ -120,12 +133,23 @@ class Recorder:
             "time_step": simulation.time_step,
             "mach_number": simulation.mach_number,
         }
+        if simulation.case.walls:
+            values |= self._wall_means()
         kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
         if self.directory is not None:
             self.history.flush_if_due(self.directory.history)
+
+    def _wall_means(self) -> dict[str, np.ndarray]:
+        """Force, torque and power of each wall, means over the time since the last row."""
+        sums, time = self.simulation.wall_sums(), self.simulation.time
+        passed = time - self._walls_since
+        mean = (sums - self._wall_sums) / passed if passed > 0 else np.zeros_like(sums)
+        self._wall_sums, self._walls_since = sums, time
+        dim = self.simulation.grid.dim
+        return {"wall_force": mean[:, :dim], "wall_torque": mean[:, dim:-1], "wall_power": mean[:, -1]}
 
     def _add_frame(self) -> None:
         assert self.frames is not None

@@ -10,6 +10,7 @@ from ..kernels.scatter import scatter_pairs
 from .grid import Window
 from .particles import Particles
 from .sorting import Sorting
+from .walls import Walls
 
 
 class Averager:
@@ -18,17 +19,24 @@ class Averager:
     Args:
         particles: whose fields are averaged.
         window: the nodes; their ``pairs`` hold sums for a moment, their ``average`` the average.
+        walls: they fold and fill as the faces of the grid do.
         sorting: of the particles, and of the nodes that they can touch.
         base, weight: tables of the shape function, filled anew in every step.
     """
 
     def __init__(
-        self, particles: Particles, window: Window, sorting: Sorting, base: np.ndarray, weight: np.ndarray
+        self,
+        particles: Particles,
+        window: Window,
+        sorting: Sorting,
+        walls: Walls,
+        base: np.ndarray,
+        weight: np.ndarray,
     ) -> None:
         dim, support = weight.shape[1:]
         self.particles = particles
         self.window = window
-        self.walls = None
+        self.walls = walls
         self.sorting = sorting
         self._tables = base, weight
         self._scatter_pairs, self._gather_scalar = scatter_pairs(dim, support), gather_scalar(dim, support)
@@ -44,12 +52,9 @@ class Averager:
         self.sums(values, weight)
         if crowding is not None:
             nodes.relieve_pairs(w.pairs, crowding, *active.arguments)
-        if self.walls:
-            self.walls.fold_pairs(w.pairs)
+        self.walls.fold_pairs(w.pairs)
         nodes.divide_pairs(w.pairs, w.average, *active.arguments)
-        if self.walls:
-            self.walls.fill_average(w.average)
-            nodes.fill(w.average, active.faces, active.mirrors, active.plane_first, 0, 1, False)
+        self.walls.fill_average(w.average)
 
     def at_particles(self) -> np.ndarray:
         """What ``window.average`` holds, at the particles, ``(n,)``."""

@@ -33,13 +33,14 @@ ROUNDING = 1e-9
 class EnergyBalance:
     """Keeps account of the energy of a scene.
 
-    Walls are at rest and materials dissipate, so that what moves and is stored can be no more than what did
-    at the start and what gravity has done since,
+    Materials dissipate, so that what moves and is stored can be no more than what did at the start and what
+    gravity and walls that move have done since,
 
         created = (K + U) - (K + U)(0) - W <= 0,
 
     with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
-    particles have come down by, and, along a periodic axis, which has no height, the integral of its power.
+    particles have come down by, and, along a periodic axis, which has no height, the integral of its power;
+    and that of the walls, the sum of λ·w over all impulses λ that they gave, at their velocity w.
     What a redistribution has put in, R (see ``redistribution.Stage``), is a part of what was created, and is
     not excused: one that feeds more than the material dissipates is stopped like any other fault. It is kept
     apart to name the cause, and ``created - redistributed`` is what the rest of the scheme has created.
@@ -78,13 +79,13 @@ class EnergyBalance:
         """Take its numbers back."""
         restore_plain(self, state)
 
-    def update(self, p: Particles, time: float, redistributed: float) -> None:
-        """Take the energies of the present state, and what the redistribution has put in so far, J."""
+    def update(self, p: Particles, time: float, redistributed: float, walls: float) -> None:
+        """Take the energies of the present state, and what the redistribution and walls have put in, J."""
         self.held = _held(p)
         power = self._power_along(p)
         self._put_in += (time - self._time) * (power + self._power) / 2
         self._time, self._power = time, power
-        work = self._height - potential_energy(p, self._downwards) + self._put_in
+        work = self._height - potential_energy(p, self._downwards) + self._put_in + walls
         self._most_work = max(self._most_work, abs(work))
         self.redistributed = redistributed
         self.created = self.held - self._first - work

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..case.model import Scheme
+from ..case.model import Case
 from ..contracts.operations import Weighting
 from ..contracts.version1 import operations_for
 from ..errors import PluginFault
@@ -21,6 +21,7 @@ from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .walls import Walls
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 
 WIDEST = 9
@@ -32,10 +33,9 @@ FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rat
 class SceneOperations:
     """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
 
-    def __init__(
-        self, scheme: Scheme, grid: Grid, particles: Particles, gravity: np.ndarray, radial: bool
-    ) -> None:
-        dim = grid.dim
+    def __init__(self, case: Case, grid: Grid, particles: Particles) -> None:
+        dim, scheme = grid.dim, case.scheme
+        gravity, radial = case.gravity_vector, case.space_.radial
         self.scheme = scheme
         self.grid = grid
         self.cell_size = grid.cell_size
@@ -44,10 +44,9 @@ class SceneOperations:
         self.radial = radial
         self.window = Window(grid)
         self.acoustic_time = math.inf
-        self.time = 0.0
-        self.walls = None
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
+        self.walls = Walls(case, grid, self.window, particles)
         self.stage = Stage(scheme, grid, particles, radial, gravity)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
@@ -65,6 +64,7 @@ class SceneOperations:
         """Tables and scratch for as many particles as there are; to be called again when there are more."""
         n, dim, support = len(self.particles), self.grid.dim, self.scheme.shape.support
         self.sorting = Sorting(self.grid, self.particles, self.window)
+        self.walls.follow(self.sorting)
         self.base = np.zeros((n, dim), dtype=np.int32)
         # One block of memory, so that what a sort needs for a moment can lie where the tables will be again.
         size = n * dim * support
@@ -73,7 +73,9 @@ class SceneOperations:
         self.hoop = np.zeros((n, support if self.radial else 0))
         self._radial_tables = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
         self._axial_tables = self.base[:, 1:], self.weight[:, 1:], self.gradient[:, 1:]
-        self.averager = Averager(self.particles, self.window, self.sorting, self.base, self.weight)
+        self.averager = Averager(
+            self.particles, self.window, self.sorting, self.walls, self.base, self.weight
+        )
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
@@ -88,6 +90,7 @@ class SceneOperations:
             "sorting": self.sorting,
             "relaxation": self.relaxation,
             "stage": self.stage,
+            "walls": self.walls,
         }
 
     def state(self) -> State:
@@ -103,8 +106,12 @@ class SceneOperations:
 
     # --- The frame of a step
 
-    def begin(self) -> int | None:
-        """Sort if needed, evaluate the shape functions. Returns a particle that left the grid, if any did."""
+    def begin(self, time: float = 0.0) -> int | None:
+        """Sort if needed, move the walls to a time, s, evaluate the shape functions.
+
+        Returns:
+            A particle that left the grid, if any did.
+        """
         lost = self._sort()
         if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
             lost = self._sort()
@@ -112,10 +119,9 @@ class SceneOperations:
             self._rehearsing = self._begun % audit.INTERVAL == 0
             self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
             self._begun += 1
+            self.walls.move_to(time)
             self._evaluate_shapes()
-            if self.walls:
-                self.averager.walls = self.walls
-                self.walls.begin(self.base, self.weight, self.time)
+            self.walls.mark(self.base, self.weight)
         return lost
 
     def _sort(self) -> int | None:
@@ -165,19 +171,16 @@ class SceneOperations:
         nodes.clear(self.window.nodes, active.rows, active.tasks)
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
-        if self.walls:
-            self.walls.fold(True, forces)
+        self.walls.fold(True, forces)
         nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
-        if self.walls:
-            self.walls.mapped()
+        self.walls.constrain(rehearse=self._rehearsing)
         self._account.mapped(forces)
 
     def map_forces(self) -> None:
         dim = self.grid.dim
         self._map(momentum=False, forces=True)
         self._fold(1 + dim, 1 + 2 * dim)
-        if self.walls:
-            self.walls.fold(False, True)
+        self.walls.fold(False, True)
         self._account.forced()
 
     def remap_velocity(self) -> None:
@@ -210,8 +213,7 @@ class SceneOperations:
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
         nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
-        if self.walls:
-            self.walls.solved(dt)
+        self.walls.constrain(dt, self._rehearsing)
 
     # --- Nodes to particles
 
@@ -237,6 +239,7 @@ class SceneOperations:
         self._account.advances(dt, graded=self._gradient_due)
         if not audit.is_finite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
+        self.walls.taken_up(flip)
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
-from ..errors import CaseError
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
@@ -51,10 +50,6 @@ class Simulation:
             MpmkitError: this process was forked from one that had used the threads.
         """
         require_threads()
-        if case.walls:
-            raise CaseError(
-                f"walls are not part of a run yet, and the case has {', '.join(case.walls)}; leave them out"
-            )
         self.case = case
         self.fraction = fraction
         self.time = 0.0
@@ -72,9 +67,7 @@ class Simulation:
         begins = particles is None and not self.starts_under_weight
         self.swinging = swinging(case, self.grid, self.particles) if begins else None
         """What is said of a pressure that swings about that of the weight."""
-        self.operations = SceneOperations(
-            case.scheme, self.grid, self.particles, case.gravity_vector, case.space_.radial
-        )
+        self.operations = SceneOperations(case, self.grid, self.particles)
         self.refiner = Refiner(case, self.grid, self.particles)
         self.measures = Measures.of(case, self.grid, self.particles)
         self.limits: Limits
@@ -119,7 +112,8 @@ class Simulation:
     def _choose_time_step(self) -> None:
         p = self.particles
         mass, doubled, square = kinetics(p.mass, p.velocity)
-        speed = math.sqrt(square)
+        ahead = self.time + self._interval * getattr(self, "time_step", 0.0)
+        speed = max(math.sqrt(square), self.operations.walls.fastest(self.time, ahead))
         self.mach_number = mach_number(p, speed)
         waves = [(group, p.wave_speed(group)) for group in p.groups]
         self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
@@ -182,7 +176,7 @@ class Simulation:
     def _advance(self, at_most: float) -> float:
         self.prepare()
         try:
-            lost = self.operations.begin()
+            lost = self.operations.begin(self.time)
         except Scattered as error:
             stop(self, error.particle, scattered=True)
         if lost is not None:
@@ -192,7 +186,6 @@ class Simulation:
         dt = min(self.time_step, at_most)
         self.operations.step(dt)
         self.time += dt
-        self.operations.time = self.time
         self.steps += 1
         self.particle_steps += len(self.particles)
         return dt
@@ -217,6 +210,15 @@ class Simulation:
     def mapped_mass(self) -> float | None:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
         return self.operations.mapped_mass
+
+    def wall_sums(self) -> np.ndarray:
+        """What each wall has given to the material so far, ``(walls, …)``: impulse, its moment, work."""
+        return self.operations.walls.sums()
+
+    @property
+    def walls_work(self) -> float:
+        """Energy that walls that move have given to the material so far, J."""
+        return self.operations.walls.work
 
     @property
     def redistribution_energy(self) -> float:

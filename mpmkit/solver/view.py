@@ -51,6 +51,10 @@ class SceneView(Protocol):
     def redistribution_energy(self) -> float:
         """Energy that redistributions have put in so far, J; see ``redistribution.Stage``."""
 
+    @property
+    def walls_work(self) -> float:
+        """Energy that walls that move have given to the material so far, J."""
+
     def require_tables(self) -> None:
         """Raise PluginFault if the weights of the last step cannot be right."""
 

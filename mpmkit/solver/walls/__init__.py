@@ -1,6 +1,5 @@
-"""Walls of a scene: where they meet the grid, what they do to its nodes, and what that takes."""
+"""Walls that stand anywhere and move: where they meet the grid, and what they do to its nodes."""
 
-from .wall import Wall
 from .walls import Walls
 
-__all__ = ["Wall", "Walls"]
+__all__ = ["Walls"]

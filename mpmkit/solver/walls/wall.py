@@ -1,175 +1,172 @@
-"""One wall of a scene."""
+"""One wall of a scene: the nodes at which it acts, and what it has given to the material."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...contracts import Contact, ContactNodes
 from ...kernels import walls as kernels
+from ...registry import audit
 from ..grid import Grid, Window
-from .contact_nodes import ContactNodes
+from ..stateful import State, plain_state, restore_plain
+from .wall_nodes import MARGIN, WallNodes
 
-MARGIN = 1.0
-"""Cells that a wall may move before the nodes near it are looked for anew."""
 SWEEPS = 3
-"""Turns in which impulses at neighbouring places are brought together."""
+"""Turns in which the impulses at neighbouring places are brought together."""
 
 
 class Wall:
-    """A surface with a contact, and the nodes of the window at which it acts.
+    """A surface with a contact, on the nodes of a window. Lengths are in cells, but for places.
 
     Attributes:
-        impulse: N s, (dim,), that it has given to the material since the last look.
+        sums: impulse, N s, ``(dim,)``, its moment about the origin of the scene, N m s, ``(1,)`` about the axis
+            out of the plane or ``(3,)``, and work, J: all that the wall has given to the material so far.
     """
 
-    def __init__(self, name, surface, contact, grid: Grid) -> None:
+    def __init__(self, name: str, surface: audit.AuditedSurface, contact: Contact, grid: Grid) -> None:
         self.name = name
         self.surface = surface
         self.contact = contact
         self.grid = grid
-        self.moving = surface.moving
-        self.impulse = np.zeros(grid.dim)
-        self.mapped_impulse = np.zeros(grid.dim)
-        self._candidates = None
+        self.odd = contact.parity == "odd"
+        self.pulls = contact.pulls
+        self.sums = np.zeros(grid.dim + (3 if grid.dim == 3 else 1) + 1)
+        self._mapped = np.zeros(len(self.sums))
+        self._found = self._time = self._moved = 0.0
+        self._there = False
+        self._near: WallNodes | None = None
+
+    @property
+    def near(self) -> WallNodes:
+        """The nodes near it."""
+        assert self._near is not None
+        return self._near
+
+    def state(self) -> State:
+        """What it has given, where it was looked for, and what its contact remembers at the nodes."""
+        kept = plain_state(self, but=("name", "odd", "pulls", "_near"))
+        if self._near is not None:
+            kept |= {f"memory/{name}": array for name, array in self._near.memory.items()}
+        return kept
+
+    def restore(self, state: State) -> None:
+        """Take back a state; ``lay`` must follow."""
+        restore_plain(self, state)
+        self._near = None
 
     # --- Where it is
 
-    def lay(self, window: Window, active: np.ndarray, time: float) -> None:
-        """Find the nodes near the wall in a window that has been laid anew."""
-        grid, dim = self.grid, self.grid.dim
-        shape = window.shape[:dim]
-        self._window, self._active = window, active
-        number = np.stack(np.meshgrid(*[np.arange(n) for n in shape], indexing="ij"), axis=-1).reshape(-1, dim)
-        number = number + window.lower
-        count = len(active)
-        self.dense = np.full(count, kernels.FAR)
-        self.touched = np.zeros(count, dtype=np.uint8)
-        self._taken = np.zeros(count, dtype=np.uint8)
-        self._all = number
-        # A node behind the axis of an axisymmetric scene has its image in front of it.
-        self._place = grid.lower + number * grid.cell_size
-        if grid.radial:
-            self._place[:, 0] = np.abs(self._place[:, 0])
-        self._free = self._open_axes(number)
-        self._find(time)
+    def lay(self, window: Window, active: np.ndarray, state: State | None = None) -> None:
+        """Go over to a window that has been laid anew, or back to one in which the wall had a state."""
+        before, self._near = self._near, WallNodes(self.contact, self.grid, window, active)
+        if state is not None:
+            for name, array in self._near.memory.items():
+                array[...] = state[f"memory/{name}"]
+            self._find(self._found)
+            self._sort(self._time)
+        elif before is not None:
+            self._near.take_memory(before)
 
-    def _open_axes(self, number):
-        from ...kernels.nodes import MIRROR, STICK
-        free = np.full(len(number), (1 << self.grid.dim) - 1, dtype=np.int64)
-        for a in range(self.grid.dim):
-            for side, plane in enumerate((0, self.grid.cells[a])):
-                face = self.grid.faces[a, side]
-                on = number[:, a] == plane
-                if face == MIRROR:
-                    free[on] &= ~(1 << a)
-                elif face == STICK:
-                    free[on] = 0
-        return free
+    def move_to(self, time: float) -> None:
+        """Be where it is at a time, s."""
+        self._there = self.surface.present(time)
+        moved = self.surface.fastest(self._time, time) * (time - self._time) / self.grid.cell_size
+        self._moved += moved
+        if not self.near.found or self._moved > MARGIN:
+            self._find(time)
+            self._moved = 0.0
+        if moved > 0 or not self.near.sorted:
+            self._sort(time)
+        self._time = time
 
     def _find(self, time: float) -> None:
-        d, _ = self.surface.distance(self._place, time)
-        d = d / self.grid.cell_size
-        room = kernels.NEAR + (MARGIN if self.moving else 0.0)
-        self._at = np.flatnonzero(np.abs(d) <= room)
-        self.dense[:] = kernels.FAR
-        self._moved = 0.0
-        self._time = time
-        k, dim = len(self._at), self.grid.dim
-        self._at_wall = np.empty(k, dtype=np.int64)
-        self._ghost = np.empty(k, dtype=np.int64)
-        self.index = np.zeros((k, 1 << dim), dtype=np.int64)
-        self.weight = np.zeros((k, 1 << dim))
-        self.image = np.zeros((k, 1 << dim), dtype=np.int64)
-        self.image_weight = np.zeros((k, 1 << dim))
-        self._pair = np.zeros((k, 2))
-        self._behind = np.empty(k, dtype=np.int64)
-        self._held = np.zeros((k, 1 + dim))
-        self._impulse = np.zeros((k, dim))
-        self._number = np.ascontiguousarray(self._all[self._at])
-        self._x = np.ascontiguousarray(self._place[self._at])
-        self._acting = np.empty(k, dtype=np.int64)
-        self._share = np.zeros((k, 1 + (1 << dim)))
-        self._stiffness, self._velocity, self._inner = np.zeros((3, k, dim))
-        self._sort(time)
+        self._found = time
+        self.near.find(self.surface, time)
 
     def _sort(self, time: float) -> None:
-        window = self._window
-        d, self.normal = self.surface.distance(self._x, time)
-        if self.grid.radial:  # the image of a node behind the axis has its normal turned round
-            behind = self._number[:, 0] < 0
-            self.normal = np.where(behind[:, None], self.normal * [-1.0, 1.0], self.normal)
-        self.d = d / self.grid.cell_size
-        self.wall_velocity = self.surface.velocity(self._x, time)
-        self.dense[self._at] = self.d
-        self._taken[self._at] = 0
-        dim = self.grid.dim
-        count, ghosts = kernels.find_nodes(
-            self._at, self._number, self.d, self.normal, window.lower, np.array(window.shape),
-            np.array(window.strides), self._active, self._taken, self._at_wall, self._ghost, self.index, self.weight,
-        )
-        n = kernels.find_images(
-            self._at, self._number, self.d, self.normal, window.lower, np.array(window.shape),
-            np.array(window.strides), self._active, self._taken, self._behind, self.image, self.image_weight)
-        self.behind = self._behind[:n]
-        self.at_wall, self.ghost = self._at_wall[:count], self._ghost[:ghosts]
-
-    def begin(self, time: float) -> None:
-        """Move to where the wall is now."""
-        if not self.moving:
-            return
-        self._moved += self.surface.fastest(self._time, time) * (time - self._time) / self.grid.cell_size
-        self._time = time
-        if self._moved > MARGIN:
-            self._find(time)
-        else:
-            self._sort(time)
-
-    def mark(self, position, half_size, base, weight):
-        w = self._window
-        self.touched[self._at] = 0
-        kernels.mark_touched(position, half_size, 1 / self.grid.cell_size, base, weight, w.lower,
-                             np.array(w.strides), self.dense, self.touched)
+        self.near.sort(self.surface, time)
 
     # --- What it does
 
+    def keep_out(self, position: np.ndarray) -> None:
+        """Put particles that have come into it back to its surface."""
+        if self._there:
+            w = self.near
+            kernels.keep_out(position, self.grid.cell_size, w.lower, w.strides, w.dense)
+
+    def mark(self, position: np.ndarray, half_size: np.ndarray, base: np.ndarray, weight: np.ndarray) -> None:
+        """Find the nodes that material touches, by the boxes of the particles and their weights."""
+        w = self.near
+        w.touched[w.at] = 0
+        if self._there:
+            kernels.mark_touched(
+                position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense, w.touched
+            )  # fmt: skip
+
     def fold(self, momentum: bool, forces: bool) -> None:
-        kernels.fold(self._window.nodes, self.ghost, self._at, self.normal, self.wall_velocity, self.index,
-                     self.weight, self.touched, self.contact.parity == "odd", momentum, forces, self._held)
+        """Fold what lies on its ghosts."""
+        w = self.near
+        kernels.fold(
+            w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
+            momentum, forces, w.held,
+        )  # fmt: skip
 
-    def fill(self, solved: bool, dt: float = 0.0) -> None:
-        self._impulse[:] = 0.0
-        kernels.fill(self._window.nodes, self.ghost, self._at, self.normal, self.wall_velocity, self.index,
-                     self.weight, self.touched, self.contact.parity == "odd", solved, dt, self._held, self._impulse)
-        if solved:
-            self.impulse += self._impulse.sum(axis=0)
-
-    def act(self, solved: bool, dt: float) -> None:
-        nodes = self._window.nodes
+    def act(self, rehearse: bool, dt: float | None) -> None:
+        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
+        w = self.near
         count = kernels.at_wall_velocities(
-            nodes, self.at_wall, self._at, self.d, self.normal, self.index, self.weight, self._free, self._acting,
-            self._share, self._stiffness, self._velocity, self._inner)
+            w.window.nodes, w.at_wall, w.at, w.d, w.normal, w.index, w.weight, w.free, w.acting, w.share,
+            w.stiffness, w.velocity, w.inner,
+        )  # fmt: skip
+        sums = self.sums
+        if dt is None:
+            sums = self._mapped
+            sums[:] = 0.0
         if not count:
             return
-        acting = self._acting[:count]
-        before = self._velocity[:count].copy()
-        normal = self.normal[acting]
-        resist = (normal**2 * self._stiffness[:count]).sum(axis=1)
-        mass = np.divide(1.0, resist, out=np.zeros(count), where=resist > 0)
-        given = ContactNodes(
-            position=self._x[acting], normal=normal, wall_velocity=self.wall_velocity[acting], mass=mass,
-            velocity=self._velocity[:count], inner=self._inner[:count],
-            depth=(self.d[acting] + 1) * self.grid.cell_size,
-            touched=self.touched[self._at[acting]].astype(bool), memory=self.memory(acting))
-        if solved:
-            self.contact.solved(given, dt)
-        else:
-            self.contact.mapped(given)
+        acting, before = w.acting[:count], w.velocity[:count].copy()
+        nodes = self._given(count)
+        if rehearse:
+            audit.rehearse_contact(self.contact, nodes, dt)
+        audit.call_contact(self.contact, nodes, dt)
+        w.remember(acting, nodes.memory)
         impulse = np.zeros((count, self.grid.dim))
-        kernels.push(nodes, acting, self._at, self.normal, self.index, self._free, self._share, self._stiffness,
-                     before, given.velocity, self.contact.parity == "odd", True, SWEEPS, solved, impulse)
-        if solved:
-            self.impulse += impulse.sum(axis=0)
-        else:
-            self.mapped_impulse += impulse.sum(axis=0)
+        kernels.push(
+            w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
+            nodes.velocity, self.odd, self.pulls, SWEEPS, dt is not None, impulse,
+        )  # fmt: skip
+        kernels.add_up(impulse, acting, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums)
 
-    def memory(self, acting):
-        return {}
+    def _given(self, count: int) -> ContactNodes:
+        w = self.near
+        acting = w.acting[:count]
+        normal = w.normal[acting]
+        resistance = (normal * normal * w.stiffness[:count]).sum(axis=1)
+        at = w.at[acting]
+        return ContactNodes(
+            position=w.place[acting],
+            normal=normal,
+            wall_velocity=w.wall_velocity[acting],
+            mass=np.divide(1.0, resistance, out=np.zeros(count), where=resistance > 0),
+            velocity=w.velocity[:count],
+            inner=w.inner[:count],
+            depth=(w.d[acting] + 1) * self.grid.cell_size,
+            touched=w.touched[at] > 0,
+            memory={name: array[at] for name, array in w.memory.items()},
+        )
+
+    def fill(self, dt: float | None) -> None:
+        """Fill its ghosts with velocities as mapped, or as solved in a step of ``dt`` s."""
+        w = self.near
+        kernels.fill(
+            w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
+            dt is not None, dt or 0.0, w.held, w.impulse,
+        )  # fmt: skip
+        sums = self._mapped if dt is None else self.sums
+        kernels.add_up(
+            w.impulse[w.ghosts], w.ghosts, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums
+        )
+
+    def taken_up(self, part: float) -> None:
+        """Count the part of the impulses in mapping that reaches the particles."""
+        self.sums += part * self._mapped

@@ -1,64 +1,135 @@
-"""All walls of a scene."""
+"""All walls of a scene that are not faces of its grid."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...case.model import Case
 from ...kernels import nodes as node_kernels
 from ...kernels import walls as kernels
+from ...registry import audit
+from ..grid import Grid, Window
+from ..particles import Particles
+from ..sorting import Sorting
+from ..stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .wall import Wall
 
 
 class Walls:
-    def __init__(self, walls, grid, window, sorting, particles):
-        self.walls = list(walls)
-        self.grid, self.window, self.sorting, self.particles = grid, window, sorting, particles
-        self.time = 0.0
+    """Lets each wall act where a step constrains nodes: after mapping, and after the momentum equation.
+
+    Walls fold one after the other and fill in the opposite order, after the faces of the grid have folded and
+    before they fill, so that all of it together is a fold and its transpose.
+    """
+
+    def __init__(self, case: Case, grid: Grid, window: Window, particles: Particles) -> None:
+        self.grid = grid
+        self.window = window
+        self.particles = particles
+        self.walls = [
+            Wall(name, audit.placed(wall.surface, case.space_), wall.contact, grid)
+            for name, wall in case.walls.items()
+        ]
         self._sorts = -1
 
-    def __bool__(self):
-        return bool(self.walls)
+    def __len__(self) -> int:
+        return len(self.walls)
 
-    def begin(self, base, weight, time):
+    @property
+    def components(self) -> dict[str, Stateful]:
+        """What has a state of its own."""
+        return {wall.name: wall for wall in self.walls}
+
+    def state(self) -> State:
+        """That of its walls."""
+        return plain_state(self) | state_of(self.components)
+
+    def restore(self, state: State) -> None:
+        """Take back a state, for a window and a sorting that are in theirs already."""
+        restore_plain(self, state)
+        restore(self.components, state)
+        if self._sorts >= 0:
+            active = self._active()
+            for name, wall in self.components.items():
+                own = {key.removeprefix(f"{name}/"): value for key, value in state.items()}
+                wall.lay(self.window, active, own)  # type: ignore[attr-defined]
+
+    def follow(self, sorting: Sorting) -> None:
+        """Take the nodes that particles can reach from a sorting from now on."""
+        self.sorting = sorting
+        self._sorts = -1
+
+    @property
+    def work(self) -> float:
+        """Energy that all walls have given to the material so far, J."""
+        return float(sum(wall.sums[-1] for wall in self.walls))
+
+    def sums(self) -> np.ndarray:
+        """What each wall has given so far, ``(walls, …)``, see ``Wall``."""
+        return np.array([wall.sums for wall in self.walls])
+
+    def fastest(self, t0: float, t1: float) -> float:
+        """Upper bound of the speed of all walls between two times, m/s."""
+        return max((wall.surface.fastest(t0, t1) for wall in self.walls), default=0.0)
+
+    def move_to(self, time: float) -> None:
+        """Be where the walls are at a time, s, and keep particles out of them. Particles must be sorted."""
         if self._sorts != self.sorting.sorts:
+            active = self._active()
+            for wall in self.walls:
+                wall.lay(self.window, active)
             self._sorts = self.sorting.sorts
-            active = np.zeros(len(self.window.nodes), dtype=np.uint8)
-            for first, end in self.sorting.active.rows:
-                active[first:end] = 1
-            for wall in self.walls:
-                wall.lay(self.window, active, time)
-        else:
-            for wall in self.walls:
-                wall.begin(time)
-        p = self.particles
         for wall in self.walls:
-            wall.mark(p.position, p.half_size, base, weight)
+            wall.move_to(time)
+            wall.keep_out(self.particles.position)
 
-    def fold(self, momentum, forces):
+    def _active(self) -> np.ndarray:
+        """Which nodes of the window particles can reach, uint8."""
+        ends = np.zeros(len(self.window.nodes) + 1, dtype=np.int64)
+        rows = self.sorting.active.rows
+        np.add.at(ends, rows[:, 0], 1)
+        np.add.at(ends, rows[:, 1], -1)
+        return (np.cumsum(ends[:-1]) > 0).astype(np.uint8)
+
+    def mark(self, base: np.ndarray, weight: np.ndarray) -> None:
+        """Find the nodes that material touches."""
+        for wall in self.walls:
+            wall.mark(self.particles.position, self.particles.half_size, base, weight)
+
+    def fold(self, momentum: bool, forces: bool) -> None:
+        """Fold what lies on the ghosts of the walls; those of the faces are folded already."""
         for wall in self.walls:
             wall.fold(momentum, forces)
 
-    def mapped(self):
+    def constrain(self, dt: float | None = None, rehearse: bool = False) -> None:
+        """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill all ghosts."""
+        if not self.walls:
+            return
         for wall in self.walls:
-            wall.act(False, 0.0)
+            wall.act(rehearse, dt)
         for wall in reversed(self.walls):
-            wall.fill(False)
-        self._fill_faces(1 + self.grid.dim)
-
-    def solved(self, dt):
-        for wall in self.walls:
-            wall.act(True, dt)
-        for wall in reversed(self.walls):
-            wall.fill(True, dt)
-        self._fill_faces(1 + 2 * self.grid.dim)
-
-    def _fill_faces(self, last):
+            wall.fill(dt)
+        last = 1 + (1 if dt is None else 2) * self.grid.dim
         active = self.sorting.active
         node_kernels.fill(self.window.nodes, active.faces, active.mirrors, active.plane_first, 1, last, True)
 
-    def fold_pairs(self, pairs):
-        for w in self.walls:
-            kernels.fold_pairs(pairs, w.behind, w._at, w.image, w.image_weight, w.touched, w._pair)
+    def taken_up(self, flip: float) -> None:
+        """Count impulses in mapping, of which particles take a part 1 - ``flip``: see ``move_particles``."""
+        for wall in self.walls:
+            wall.taken_up(1 - flip)
 
-    def fill_average(self, average):
-        for w in reversed(self.walls):
-            kernels.fill_average(average, w.behind, w._at, w.image, w.image_weight, w.touched, w._pair)
+    def fold_pairs(self, pairs: np.ndarray) -> None:
+        """Fold the sums of an average."""
+        for wall in self.walls:
+            w = wall.near
+            kernels.fold_pairs(pairs, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
+
+    def fill_average(self, average: np.ndarray) -> None:
+        """Fill an average, that of the ghosts of the faces too."""
+        if not self.walls:
+            return
+        for wall in reversed(self.walls):
+            w = wall.near
+            kernels.fill_average(average, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
+        active = self.sorting.active
+        node_kernels.fill(average, active.faces, active.mirrors, active.plane_first, 0, 1, False)

@@ -1,0 +1,125 @@
+"""The nodes near a wall: at it, behind it, and around their images."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...contracts import Contact
+from ...contracts.contact import initial_memory
+from ...kernels import walls as kernels
+from ...kernels.nodes import FRICTION, OPEN, PERIODIC, STICK
+from ...registry import audit
+from ..grid import Grid, Window
+
+MARGIN = 1.0
+"""Cells that a wall may move before the nodes near it are looked for anew."""
+
+
+class WallNodes:
+    """The nodes of one window near one wall, with room for what it needs of them. Lengths are in cells, but for
+    places.
+    """
+
+    def __init__(self, contact: Contact, grid: Grid, window: Window, active: np.ndarray) -> None:
+        """
+        Args:
+            contact: for what it remembers.
+            grid, window: the nodes.
+            active: (nodes,) of the window, whether particles can reach a node, uint8.
+        """
+        dim = grid.dim
+        self.grid, self.window, self.active = grid, window, active
+        self.contact = contact
+        self.lower, self.shape = window.lower, np.array(window.shape)
+        self.strides = np.array(window.strides)
+        number = np.indices(window.shape[:dim]).reshape(dim, -1).T + window.lower
+        self.numbers = np.ascontiguousarray(number)
+        # What lies behind a plane of symmetry or beyond a period is seen at its image.
+        places = np.where(grid.periodic, np.mod(number, grid.cells), number)
+        if grid.radial:
+            places[:, 0] = np.abs(places[:, 0])
+        self.places = grid.lower + places * grid.cell_size
+        self.free = _free_axes(grid, number)
+        count = len(active)
+        self.dense = np.full(count, kernels.FAR)
+        self.touched = np.zeros(count, dtype=np.uint8)
+        self._taken = np.zeros(count, dtype=np.uint8)
+        self.memory = initial_memory(contact, count)
+        self.found = self.sorted = False
+
+    def take_memory(self, before: WallNodes) -> None:
+        """What the contact remembers at nodes that were in the window before."""
+        low = np.maximum(before.lower, self.lower)
+        shapes = [layout.window_shape for layout in (before, self)]
+        high = np.minimum(before.lower + shapes[0], self.lower + shapes[1])
+        if (low < high).all():
+            common = [
+                tuple(map(slice, low - layout.lower, high - layout.lower)) for layout in (before, self)
+            ]
+            for name, array in self.memory.items():
+                array.reshape(shapes[1])[common[1]] = before.memory[name].reshape(shapes[0])[common[0]]
+
+    @property
+    def window_shape(self) -> np.ndarray:
+        return self.shape[: self.grid.dim]
+
+    def find(self, surface: audit.AuditedSurface, time: float) -> None:
+        """Find the nodes that are, or may soon be, near the surface."""
+        dim = self.grid.dim
+        distance, _ = surface.distance(self.places, time)
+        near = np.abs(distance) <= (kernels.NEAR + MARGIN) * self.grid.cell_size
+        self.at = np.flatnonzero(near)
+        k = len(self.at)
+        self.number = np.ascontiguousarray(self.numbers[self.at])
+        self.place = np.ascontiguousarray(self.places[self.at])
+        self._at_wall, self._ghosts, self._behind, self.acting = np.empty((4, k), dtype=np.int64)
+        self.index, self.image = np.zeros((2, k, 1 << dim), dtype=np.int64)
+        self.weight, self.image_weight = np.zeros((2, k, 1 << dim))
+        self.share = np.zeros((k, 1 + (1 << dim)))
+        self.held = np.zeros((k, 1 + 2 * dim))
+        self.pair = np.zeros((k, 2))
+        self.stiffness, self.velocity, self.inner, self.impulse = np.zeros((4, k, dim))
+        self.dense[:] = kernels.FAR
+        self.found, self.sorted = True, False
+
+    def sort(self, surface: audit.AuditedSurface, time: float) -> None:
+        """Tell the nodes at the wall, the ghosts, and the nodes around the image of each."""
+        distance, self.normal = surface.distance(self.place, time)
+        self.wall_velocity = surface.velocity(self.place, time)
+        if self.grid.radial:  # a node behind the axis sees the image of the wall
+            behind = self.number[:, 0] < 0
+            self.normal[behind, 0] *= -1.0
+            self.wall_velocity[behind, 0] *= -1.0
+        self.d = distance / self.grid.cell_size
+        self.dense[self.at] = self.d
+        self._taken[:] = 0
+        of_window = (self.lower, self.shape, self.strides, self.active, self._taken)
+        count, ghosts = kernels.find_nodes(
+            self.at, self.number, self.d, self.normal, *of_window, self._at_wall, self._ghosts, self.index,
+            self.weight,
+        )  # fmt: skip
+        behind = kernels.find_images(
+            self.at, self.number, self.d, self.normal, *of_window, self._behind, self.image, self.image_weight
+        )
+        self.at_wall, self.ghosts = self._at_wall[:count], self._ghosts[:ghosts]
+        self.behind = self._behind[:behind]
+        self.sorted = True
+
+    def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
+        """Keep what a contact remembers; nodes at which it does not act forget."""
+        for name, array in self.memory.items():
+            array[self.at] = self.contact.memory[name].at_start(self.contact)
+            array[self.at[acting]] = memory[name]
+
+
+def _free_axes(grid: Grid, number: np.ndarray) -> np.ndarray:
+    """Bits of the axes along which no face of the grid holds the nodes, ``(n,)``."""
+    free = np.full(len(number), (1 << grid.dim) - 1, dtype=np.int64)
+    for axis in range(grid.dim):
+        for side, plane in enumerate((0, int(grid.cells[axis]))):
+            face, on = grid.faces[axis, side], number[:, axis] == plane
+            if face == STICK:
+                free[on] = 0
+            elif face not in (OPEN, PERIODIC, FRICTION):
+                free[on] &= ~(1 << axis)
+    return free
