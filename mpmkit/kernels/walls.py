@@ -72,7 +72,10 @@ def _corners(place, lower, shape, strides, active, taken, index, weight):
 
 
 @function()
-def find_nodes(at, number, distance, normal, lower, shape, strides, active, taken, at_wall, ghost, index, weight):
+def find_nodes(
+    at, number, distance, normal, lower, shape, strides, active, taken, at_wall, ghost, index, weight,
+    foot, foot_weight,
+):  # fmt: skip
     """Sort the nodes near a wall into those at it and ghosts, with the nodes around the image of each.
 
     Args:
@@ -84,6 +87,7 @@ def find_nodes(at, number, distance, normal, lower, shape, strides, active, take
         taken: (nodes,) scratch, all false: becomes true at ghosts.
         at_wall, ghost: (k,) which of the k are at the wall, and which are ghosts (out).
         index, weight: (k, 2^dim) of the image of each (out).
+        foot, foot_weight: (k, 2^dim) nodes at the wall around the foot of each ghost (out).
 
     Returns:
         How many are at the wall, and how many are ghosts.
@@ -110,7 +114,34 @@ def find_nodes(at, number, distance, normal, lower, shape, strides, active, take
         for a in range(dim):
             place[a] = number[k, a] - 2.0 * distance[k] * normal[k, a]
         _corners(place, lower, shape, strides, active, taken, index[k], weight[k])
+    for k in range(len(at)):
+        taken[at[k]] = 1
+    for j in range(count):
+        taken[at[at_wall[j]]] = 0
+    for j in range(ghosts):
+        k = ghost[j]
+        for a in range(dim):
+            place[a] = number[k, a] - distance[k] * normal[k, a]
+        _corners(place, lower, shape, strides, active, taken, foot[k], foot_weight[k])
+    for k in range(len(at)):
+        taken[at[k]] = 0
+    for j in range(ghosts):
+        taken[at[ghost[j]]] = 1
     return count, ghosts
+
+
+@function()
+def press(ghost, normal, foot, foot_weight, held, dt, pressed):
+    """Add to ``pressed`` (nodes,) of the nodes at the wall what it gives along its normal by the ghosts, N s:
+    dt (R f - f)·n = -2 dt f·n of each."""
+    dim = normal.shape[1]
+    for k in ghost:
+        if foot_weight[k, 0] >= 0.0:
+            given = 0.0
+            for a in range(dim):
+                given -= 2.0 * dt * held[k, 1 + dim + a] * normal[k, a]
+            for c in range(foot.shape[1]):
+                pressed[foot[k, c]] += foot_weight[k, c] * given
 
 
 @function()

@@ -125,7 +125,7 @@ class Wall:
         if not count:
             return
         acting, before = w.acting[:count], w.velocity[:count].copy()
-        nodes = self._given(count)
+        nodes = self._given(count, dt)
         if rehearse:
             audit.rehearse_contact(self.contact, nodes, dt)
         audit.call_contact(self.contact, nodes, dt)
@@ -137,20 +137,22 @@ class Wall:
         )  # fmt: skip
         kernels.add_up(impulse, acting, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums)
 
-    def _given(self, count: int) -> ContactNodes:
+    def _given(self, count: int, dt: float | None) -> ContactNodes:
         w = self.near
         acting = w.acting[:count]
         normal = w.normal[acting]
         resistance = (normal * normal * w.stiffness[:count]).sum(axis=1)
+        mass = np.divide(1.0, resistance, out=np.zeros(count), where=resistance > 0)
         at = w.at[acting]
         return ContactNodes(
             position=w.place[acting],
             normal=normal,
             wall_velocity=w.wall_velocity[acting],
-            mass=np.divide(1.0, resistance, out=np.zeros(count), where=resistance > 0),
+            mass=mass,
             velocity=w.velocity[:count],
             inner=w.inner[:count],
             depth=(w.d[acting] + 1) * self.grid.cell_size,
+            pressed=np.zeros(count) if dt is None else w.pressed(acting, dt) * resistance,
             touched=w.touched[at] > 0,
             memory={name: array[at] for name, array in w.memory.items()},
         )

@@ -43,6 +43,7 @@ class WallNodes:
         count = len(active)
         self.dense = np.full(count, kernels.FAR)
         self.touched = np.zeros(count, dtype=np.uint8)
+        self._pressed = np.zeros(count)
         self._taken = np.zeros(count, dtype=np.uint8)
         self.memory = initial_memory(contact, count)
         self.found = self.sorted = False
@@ -73,8 +74,8 @@ class WallNodes:
         self.number = np.ascontiguousarray(self.numbers[self.at])
         self.place = np.ascontiguousarray(self.places[self.at])
         self._at_wall, self._ghosts, self._behind, self.acting = np.empty((4, k), dtype=np.int64)
-        self.index, self.image = np.zeros((2, k, 1 << dim), dtype=np.int64)
-        self.weight, self.image_weight = np.zeros((2, k, 1 << dim))
+        self.index, self.image, self.foot = np.zeros((3, k, 1 << dim), dtype=np.int64)
+        self.weight, self.image_weight, self.foot_weight = np.zeros((3, k, 1 << dim))
         self.share = np.zeros((k, 1 + (1 << dim)))
         self.held = np.zeros((k, 1 + 2 * dim))
         self.pair = np.zeros((k, 2))
@@ -96,7 +97,7 @@ class WallNodes:
         of_window = (self.lower, self.shape, self.strides, self.active, self._taken)
         count, ghosts = kernels.find_nodes(
             self.at, self.number, self.d, self.normal, *of_window, self._at_wall, self._ghosts, self.index,
-            self.weight,
+            self.weight, self.foot, self.foot_weight,
         )  # fmt: skip
         behind = kernels.find_images(
             self.at, self.number, self.d, self.normal, *of_window, self._behind, self.image, self.image_weight
@@ -104,6 +105,13 @@ class WallNodes:
         self.at_wall, self.ghosts = self._at_wall[:count], self._ghosts[:ghosts]
         self.behind = self._behind[:behind]
         self.sorted = True
+
+    def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
+        """Impulse along the normal that ghosts bring, N s, at nodes at the wall."""
+        kernels.press(self.ghosts, self.normal, self.foot, self.foot_weight, self.held, dt, self._pressed)
+        found = np.maximum(self._pressed[self.at[acting]], 0.0)
+        self._pressed[self.at] = 0.0
+        return found
 
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
         """Keep what a contact remembers; nodes at which it does not act forget."""
