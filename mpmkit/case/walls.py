@@ -34,6 +34,7 @@ def check_walls(case: Case) -> None:
             problem = audit.problem(wall.surface, case.space_)
             if problem is not None:
                 raise ValueError(f"walls.{name}.surface: {problem}")
+            audit.require_contact(wall.contact)
             _check_surface(f"walls.{name}.surface", wall, case)
 
 
