@@ -60,8 +60,8 @@ class AuditedSurface:
                 "distance and normal",
             )
         distance, normal = returned
-        require_array(self.author, "distance, as the first,", distance, (len(x),))
-        require_array(self.author, "distance, as the second,", normal, x.shape)
+        require_array(self.author, "distance (its first entry)", distance, (len(x),))
+        require_array(self.author, "distance (its second entry)", normal, x.shape)
         length = np.sqrt((normal * normal).sum(axis=1))
         self._require("a distance that is not finite", np.isfinite(distance), x, t)
         self._require("a normal that is not of length 1", np.abs(length - 1) <= UNIT, x, t)
