@@ -473,12 +473,16 @@ def test_the_schema_has_units_descriptions_and_every_plugin():
         names = list(installed().of_kind(kind))
         assert sorted(place.choices()) == names  # the shorthand, for completion
         assert place.selector() == ("name", place.choices())
+    for kind in ("surface", "contact"):
+        place = Place(schema, {}, ["walls", "mould", kind])
+        assert place.selector() == ("kind", list(installed().of_kind(kind)))
+    assert sorted(Place(schema, {}, ["walls", "mould", "contact"]).choices()) == ["slip", "stick"]
     laws = Place(schema, GOOD, ["bodies", 0, "material"])
     assert sorted(laws.selector()[1]) == list(installed().of_kind("law"))
     for kind, plugins in installed().plugins.items():
         for entry in plugins.values():
             for name, parameter in entry.plugin.model_json_schema().get("properties", {}).items():
-                assert name == "name" or parameter.get("description"), (kind, entry.name, name)
+                assert name == entry.plugin.named_by or parameter.get("description"), (kind, entry.name, name)
 
 
 @pytest.mark.parametrize("sound_speed", [{"factor": 10}, {"mach": 0.1}], ids=["factor", "mach"])

@@ -14,6 +14,7 @@ import numpy as np
 
 from .model import Body, Case, Material
 from .plausibility import implausible
+from .walls import wall_between
 
 CLOSED = ("slip", "stick", "symmetry")
 PULLING = ("slip", "symmetry")
@@ -78,7 +79,11 @@ def _falls_out(case: Case) -> Iterator[str]:
     side = _side(case, axis, upwards=g[axis] > 0)
     if case.grid.faces.get(side, "open") != "open":
         return
-    held = [number for number, body in enumerate(case.bodies) if _is_held(case, body, axis)]
+    held = [
+        number
+        for number, body in enumerate(case.bodies)
+        if _is_held(case, body, axis) or _has_a_wall_below(case, body, axis)
+    ]
     for number, body in enumerate(case.bodies):
         if number in held or any(_is_below(case, case.bodies[other], body, axis) for other in held):
             continue
@@ -198,6 +203,18 @@ def _is_held(case: Case, body: Body, axis: int) -> bool:
             if (rough or (a == axis and face in CLOSED)) and _touches(case, body, a, upwards):
                 return True
     return False
+
+
+def _has_a_wall_below(case: Case, body: Body, axis: int) -> bool:
+    """Whether something of a wall is between a body and the face to which gravity draws it."""
+    if not case.walls:
+        return False
+    (lower, upper), (least, most) = _bounds(case, body), case.domain_bounds
+    if case.gravity_vector[axis] < 0:
+        lower[axis], upper[axis] = least[axis], lower[axis]
+    else:
+        lower[axis], upper[axis] = upper[axis], most[axis]
+    return bool((lower < upper).all()) and wall_between(case, (lower, upper))
 
 
 def _touches(case: Case, body: Body, axis: int, upwards: bool) -> bool:

@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
+from ..contracts import KINDS, Plugin
 from ..errors import CaseError
 from .allowed import shown
 from .strict_json import decode
@@ -67,9 +68,18 @@ def assign(data: dict[str, Any], path: str, value: Any) -> None:
         below = here[index] if isinstance(here, list) else here.get(index)
         if below is None:
             below = here[index] = {}
-        elif isinstance(below, str) and ((depth == 1 and keys[0] == "scheme") or key == "equation_of_state"):
-            below = here[index] = {"name": below}
+        elif isinstance(below, str) and (named_by := _plugin_key(keys[: depth + 1])) is not None:
+            below = here[index] = {named_by: below}
         here = below
+
+
+def _plugin_key(path: list[str]) -> str | None:
+    """Key at which the object at a path names its plug-in; None where no plug-in stands."""
+    if len(path) == 3 and path[0] == "walls":
+        return KINDS[path[2]][1].named_by if path[2] in KINDS else None
+    if (len(path) == 2 and path[0] == "scheme") or path[-1] == "equation_of_state":
+        return Plugin.named_by
+    return None
 
 
 def _index(here: Any, key: str, path: str) -> Any:

@@ -26,10 +26,12 @@ WORDS: dict[tuple[str, ...], str] = {
     ("slip", "open"): "free",
     ("open",): "outflow, outlet, free surface, none, nothing, air, void, unbounded",
     ("friction",): "coulomb, frictional, partial slip, rough friction",
+    ("coulomb",): "friction, frictional, coulomb friction, dry friction",
+    ("navier-slip",): "navier, slip length, partial slip, linear slip",
     ("periodic",): "cyclic, wrap, repeating",
     ("symmetry",): "symmetric, symmetrical, mirror, mirrored, reflecting, axis",
     (): (
-        "moving, moving wall, inflow, inlet, navier, navier slip, plane stress, quadratic, cubic, bspline, "
+        "moving, moving wall, inflow, inlet, plane stress, quadratic, cubic, bspline, "
         "quadratic bspline, cubic bspline, cpdi, tpic, xpic, aflip, asflip, tait, cole, mohr coulomb, "
         "drucker prager, inviscid"
     ),
@@ -72,6 +74,13 @@ WORDS: dict[tuple[str, ...], str] = {
     ("sphere",): "ball, disc, disk, circle, drop",
     ("cylinder",): "rod, column, tube, pipe",
     ("mesh",): "stl, obj, ply, file, surface, polyhedron, cad",
+    # surfaces
+    ("plane",): "half space, flat, flat wall, floor",
+    ("body",): "shape, solid, obstacle, mould, mold, mesh",
+    # motions
+    ("rotation",): "rotate, spin, turn, angular",
+    ("oscillation",): "oscillate, sine, sinusoidal, vibration, harmonic",
+    ("table",): "tabulated, interpolated, points, time series",
     # keys
     ("density",): "rho, mass density",
     ("yield_stress",): "tau0, tau y, tauy, tau 0, yield, yield strength, sigma y, threshold",
@@ -97,7 +106,7 @@ WORDS: dict[tuple[str, ...], str] = {
     ("kind", "name"): "type",
     ("shape",): "geometry",
     ("material",): "fluid",
-    ("velocity",): "v0, initial velocity, speed",
+    ("velocity",): "v0, initial velocity, speed, constant velocity, translation, lift",
     ("centre",): "center, middle, origin",
     ("base",): "position, origin, bottom",
     ("bodies",): "body, objects, particles",

@@ -34,6 +34,7 @@ def check_walls(case: Case) -> None:
             problem = audit.problem(wall.surface, case.space_)
             if problem is not None:
                 raise ValueError(f"walls.{name}.surface: {problem}")
+            audit.require_contact(wall.contact)
             _check_surface(f"walls.{name}.surface", wall, case)
 
 
@@ -56,7 +57,7 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
             f"{where}.thickness is {surface.thickness:g} m, less than a cell of {cell:g} m; a wall with room "
             "for material on both sides must be at least a cell thick"
         )
-    if not any(_is_in_the_domain(surface, case, time) for time in _times(surface, case)):
+    if not any(_reaches(surface, case.domain_bounds, case, time) for time in _times(surface, case)):
         raise ValueError(
             f"{where} is outside the domain of the grid at all times of the run, so that no material can "
             "touch it; move it, or leave the wall out"
@@ -69,9 +70,18 @@ def _times(surface: audit.AuditedSurface, case: Case) -> Iterator[float]:
     return (float(time) for time in times if surface.present(float(time)))
 
 
-def _is_in_the_domain(surface: audit.AuditedSurface, case: Case, time: float) -> bool:
-    """Whether the surface may be in the domain, since d changes no faster than the place does."""
-    lower, upper = case.domain_bounds
+def wall_between(case: Case, bounds: tuple[np.ndarray, np.ndarray]) -> bool:
+    """Whether a wall that is there at the start may reach into a box between two corners, m."""
+    with blaming_plugins([("surface", wall.surface) for wall in case.walls.values()]):
+        surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
+        return any(surface.present(0.0) and _reaches(surface, bounds, case, 0.0) for surface in surfaces)
+
+
+def _reaches(
+    surface: audit.AuditedSurface, bounds: tuple[np.ndarray, np.ndarray], case: Case, time: float
+) -> bool:
+    """Whether a wall may be in a box: d changes no faster than the place does."""
+    lower, upper = bounds
     extent = upper - lower
     spacing = max(case.grid.cell_size, float(np.prod(extent) / POINTS) ** (1 / len(extent)))
     count = np.maximum(1, np.ceil(extent / spacing)).astype(int)

@@ -86,4 +86,6 @@ class Plugin(BaseModel):
             return body
         body["properties"] = {cls.named_by: {"const": name}, **body.get("properties", {})}
         body["required"] = [cls.named_by, *body.get("required", [])]
+        if body["required"] != [cls.named_by]:  # its name alone is not enough
+            return body
         return {"anyOf": [{"const": name, "description": (cls.__doc__ or "").split("\n")[0]}, body]}

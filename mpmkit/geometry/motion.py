@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from ..contracts.base import quantity
 from ..spaces import Space
@@ -231,5 +231,17 @@ class Rotation(Spell):
         return np.eye(len(K)) + math.sin(angle) * K + (1 - math.cos(angle)) * (K @ K)
 
 
-AnyMotion = Annotated[Uniform | Table | Rotation | Oscillation, Field(discriminator="kind")]
+def _motion_tag(value: Any) -> str:
+    # No tag is the name of a key: in the path of an error the two must not be taken for each other.
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return f"by-{kind}"
+
+
+AnyMotion = Annotated[
+    Annotated[Uniform, Tag("by-velocity")]
+    | Annotated[Table, Tag("by-table")]
+    | Annotated[Rotation, Tag("by-rotation")]
+    | Annotated[Oscillation, Tag("by-oscillation")],
+    Discriminator(_motion_tag),
+]
 """Any motion as it stands in a case file, told apart by its ``kind``."""

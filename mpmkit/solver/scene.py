@@ -10,6 +10,7 @@ from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import Sample, sample, shared_volume
 from ..registry import audit
+from .overlaps import refuse_overlaps_with_walls
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
@@ -34,6 +35,7 @@ def make_particles(case: Case) -> Particles:
     ]
     _refuse_overlaps(case)
     samples = [_sample_body(case, number) for number, _ in bodies]
+    refuse_overlaps_with_walls(case, zip((number for number, _ in bodies), samples, strict=True))
     counts = [len(found.volume) for found in samples]
 
     lower, _ = case.domain_bounds

@@ -9,22 +9,26 @@ Under pytest each property is then a test of its own; without it, ``for check in
 
 from .checks import (
     Check,
+    contact_checks,
     equation_of_state_checks,
     law_checks,
     order_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
+    surface_checks,
     velocity_checks,
     volumetric_checks,
 )
 from .pytest_tests import (
+    contact_tests,
     equation_of_state_tests,
     law_tests,
     order_tests,
     redistribution_tests,
     refinement_tests,
     shape_tests,
+    surface_tests,
     velocity_tests,
     volumetric_tests,
 )
@@ -33,6 +37,8 @@ from .violation import Violation
 __all__ = [
     "Check",
     "Violation",
+    "contact_checks",
+    "contact_tests",
     "equation_of_state_checks",
     "equation_of_state_tests",
     "law_checks",
@@ -45,6 +51,8 @@ __all__ = [
     "refinement_tests",
     "shape_checks",
     "shape_tests",
+    "surface_checks",
+    "surface_tests",
     "velocity_checks",
     "velocity_tests",
     "volumetric_checks",

@@ -9,18 +9,21 @@ from typing import Any
 
 from ..contracts import (
     ConstitutiveLaw,
+    Contact,
     EquationOfState,
     Operations,
     Plugin,
     Redistribution,
     Refinement,
     ShapeFunction,
+    Surface,
     UpdateOrder,
     VelocityUpdate,
     VolumetricTreatment,
 )
 from ..errors import GuardStop, PluginFault
 from . import (
+    contacts,
     elastic,
     equations_of_state,
     flight,
@@ -30,6 +33,7 @@ from . import (
     redistribution,
     refinement,
     shapes,
+    surfaces,
     volumetric,
 )
 from .descriptor import descriptor, registered
@@ -94,6 +98,24 @@ ON_EQUATIONS_OF_STATE = (
     equations_of_state.sound_speed,
     equations_of_state.energy_gives_the_pressure,
     equations_of_state.batch_order,
+)
+ON_SURFACES = (
+    surfaces.arrays,
+    surfaces.lipschitz,
+    surfaces.normals,
+    surfaces.fastest,
+    surfaces.moves_as_it_says,
+    surfaces.batch_order,
+)
+ON_CONTACTS = (
+    contacts.declares,
+    contacts.arrays,
+    contacts.extremes,
+    contacts.energy,
+    contacts.pushes_only,
+    contacts.objectivity,
+    contacts.galilei,
+    contacts.batch_order,
 )
 
 
@@ -175,6 +197,28 @@ def equation_of_state_checks(state: EquationOfState) -> list[Check]:
         state,
         [(check.__name__, partial(check, state)) for check in ON_EQUATIONS_OF_STATE],
     )
+
+
+def surface_checks(surface: Surface, *, size: float = 1.0) -> list[Check]:
+    """What every surface must be, in each space that can hold it; see ``surface_tests``."""
+    homes = surfaces.at_home(surface)
+    return _of(
+        "surface",
+        surface,
+        [
+            ("problem", partial(surfaces.problem, surface)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, surface, space, size))
+                for check in ON_SURFACES
+                for space in homes
+            ),
+        ],
+    )
+
+
+def contact_checks(contact: Contact) -> list[Check]:
+    """What every contact must do."""
+    return _of("contact", contact, [(check.__name__, partial(check, contact)) for check in ON_CONTACTS])
 
 
 def _in_each_space(

@@ -6,22 +6,26 @@ from collections.abc import Callable
 
 from ..contracts import (
     ConstitutiveLaw,
+    Contact,
     EquationOfState,
     Redistribution,
     Refinement,
     ShapeFunction,
+    Surface,
     UpdateOrder,
     VelocityUpdate,
     VolumetricTreatment,
 )
 from .checks import (
     Check,
+    contact_checks,
     equation_of_state_checks,
     law_checks,
     order_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
+    surface_checks,
     velocity_checks,
     volumetric_checks,
 )
@@ -122,6 +126,26 @@ def equation_of_state_tests(state: EquationOfState) -> Test:
     A pressure that falls with the volume, at the sound speed of the case, and the energy that belongs to it.
     """
     return _tests(equation_of_state_checks(state))
+
+
+def surface_tests(surface: Surface, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a surface, in each space that can hold it.
+
+    A distance that changes no faster than the place, its gradient, and a motion that its velocity tells.
+
+    Args:
+        surface: with parameters.
+        size: m; it is looked at within so much of the origin along each axis.
+    """
+    return _tests(surface_checks(surface, size=size))
+
+
+def contact_tests(contact: Contact) -> Test:
+    """A test function, as that of ``law_tests``, for a contact.
+
+    Nodes that nothing touches stay, no energy is added, nothing is pulled, and frames make no difference.
+    """
+    return _tests(contact_checks(contact))
 
 
 def _tests(checks: list[Check]) -> Test:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contact_mutants
 import equation_of_state_mutants
 import law_mutants
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import redistribution_mutants
 import refinement_mutants
 import shape_mutants
+import surface_mutants
 import velocity_mutants
 import volumetric_mutants
 from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
@@ -17,6 +19,7 @@ from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
 from mpmkit.registry import installed
 from mpmkit.testing import (
     Violation,
+    contact_checks,
     equation_of_state_checks,
     law_checks,
     law_tests,
@@ -24,6 +27,7 @@ from mpmkit.testing import (
     redistribution_checks,
     refinement_checks,
     shape_checks,
+    surface_checks,
     velocity_checks,
     volumetric_checks,
 )
@@ -179,7 +183,11 @@ CHECKS = {
     "redistribution": redistribution_checks,
     "refinement": refinement_checks,
     "equation_of_state": equation_of_state_checks,
+    "surface": surface_checks,
+    "contact": contact_checks,
 }
+NEED_PARAMETERS = ("surface", "contact")
+"""Kinds whose plug-ins go through the kit in ``test_walls.py``."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
     ("velocity", velocity_mutants.Still, "uniform motion plane-strain"),
@@ -225,6 +233,38 @@ OTHER_MUTANTS = [
     ("equation_of_state", equation_of_state_mutants.WritesItsInput, "arrays"),
     ("equation_of_state", equation_of_state_mutants.OneNumber, "arrays"),
     ("equation_of_state", equation_of_state_mutants.KnowsTheOthers, "batch order"),
+    ("surface", surface_mutants.NormalIntoTheWall, "normals plane-strain"),
+    ("surface", surface_mutants.NotOfLengthOne, "arrays 3d"),
+    ("surface", surface_mutants.Squared, "lipschitz 3d"),
+    ("surface", surface_mutants.Squared, "normals plane-strain"),
+    ("surface", surface_mutants.HalfTheDistance, "normals axisymmetric"),
+    ("surface", surface_mutants.AtRest, "moves as it says 3d"),
+    ("surface", surface_mutants.WrongWay, "moves as it says axisymmetric"),
+    ("surface", surface_mutants.Slower, "fastest plane-strain"),
+    ("surface", surface_mutants.OneNormal, "arrays plane-strain"),
+    ("surface", surface_mutants.NoNumber, "arrays axisymmetric"),
+    ("surface", surface_mutants.MovesThePoints, "arrays plane-strain"),
+    ("surface", surface_mutants.KnowsTheOthers, "batch order 3d"),
+    ("surface", surface_mutants.Perhaps, "arrays 3d"),
+    ("surface", surface_mutants.Nowhere, "problem"),
+    ("surface", surface_mutants.NoSentence, "problem"),
+    ("surface", surface_mutants.Paper, "arrays 3d"),
+    ("contact", contact_mutants.EveryNode, "arrays"),
+    ("contact", contact_mutants.Pulls, "pushes only"),
+    ("contact", contact_mutants.Bounces, "energy"),
+    ("contact", contact_mutants.Drives, "energy"),
+    ("contact", contact_mutants.Downwards, "objectivity"),
+    ("contact", contact_mutants.AtRestOnly, "galilei"),
+    ("contact", contact_mutants.DividesByTheSlip, "extremes"),
+    ("contact", contact_mutants.Replaces, "arrays"),
+    ("contact", contact_mutants.Forgets, "arrays"),
+    ("contact", contact_mutants.Returns, "arrays"),
+    ("contact", contact_mutants.WritesTheWall, "arrays"),
+    ("contact", contact_mutants.Touches, "arrays"),
+    ("contact", contact_mutants.KnowsTheOthers, "batch order"),
+    ("contact", contact_mutants.HiddenMemory, "batch order"),
+    ("contact", contact_mutants.NoParity, "declares"),
+    ("contact", contact_mutants.Rows, "descriptor"),
 ]
 
 
@@ -237,6 +277,8 @@ OTHER_MUTANTS = [
         ("refinement", refinement_mutants.Halves),
         ("refinement", refinement_mutants.Joins),
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
+        ("surface", surface_mutants.Rising),
+        ("contact", contact_mutants.Sticky),
     ],
 )
 def test_a_sound_one_passes(kind, plugin):
@@ -259,6 +301,7 @@ def test_a_mutant_of_another_kind_fails(kind, plugin, name):
     [
         pytest.param(check, id=f"{name}: {check.name}")
         for kind, checks in CHECKS.items()
+        if kind not in NEED_PARAMETERS
         for name, plugin in installed().of_kind(kind).items()
         for check in checks(plugin())
     ],

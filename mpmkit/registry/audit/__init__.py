@@ -28,7 +28,7 @@ from .returned import (
 )
 from .shapes import particle_domain, rehearse_shape, require_bounds, require_weights
 from .treatments import Rehearsed
-from .walls import AuditedSurface, call_contact, placed, problem, rehearse_contact
+from .walls import AuditedSurface, call_contact, placed, problem, rehearse_contact, require_contact
 
 LOOKS = 20
 """Steps between two looks at all numbers of a scene with more than ``FEW`` particles."""
@@ -55,6 +55,7 @@ __all__ = [
     "rehearse_shape",
     "require_array",
     "require_bounds",
+    "require_contact",
     "require_energy",
     "require_finite",
     "require_number",

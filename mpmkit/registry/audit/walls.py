@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 
 from ...contracts import Contact, ContactNodes, Space, Surface
+from ...contracts.contact import Parity, initial_memory
 from ...contracts.surface import PlacedSurface
 from ...errors import PluginFault
 from .fences import READ, WRITTEN, Fenced, require_intact, require_unchanged, sample
@@ -58,8 +60,8 @@ class AuditedSurface:
                 "distance and normal",
             )
         distance, normal = returned
-        require_array(self.author, "distance, as the first,", distance, (len(x),))
-        require_array(self.author, "distance, as the second,", normal, x.shape)
+        require_array(self.author, "distance (its first entry)", distance, (len(x),))
+        require_array(self.author, "distance (its second entry)", normal, x.shape)
         length = np.sqrt((normal * normal).sum(axis=1))
         self._require("a distance that is not finite", np.isfinite(distance), x, t)
         self._require("a normal that is not of length 1", np.abs(length - 1) <= UNIT, x, t)
@@ -104,6 +106,18 @@ def placed(author: Surface, space: Space) -> AuditedSurface:
                 author, f"returned {described(found)} from placed; it must have the method {method}"
             )
     return AuditedSurface(author, found)
+
+
+def require_contact(author: Contact) -> None:
+    """Raise PluginFault unless what a contact says of itself can be used."""
+    if author.parity not in get_args(Parity):
+        allowed = " or ".join(f"'{name}'" for name in get_args(Parity))
+        raise PluginFault(author, f"has the parity {author.parity!r}; it must be {allowed}")
+    require_truth(author, "pulls", author.pulls)
+    try:
+        initial_memory(author, 1)
+    except ValueError as error:
+        raise PluginFault(author, f"has a memory that {error}") from None
 
 
 def call_contact(author: Contact, nodes: ContactNodes, dt: float | None = None) -> None:

@@ -22,7 +22,7 @@ class BodySurface(RigidSurface):
     api_version = 2
     citation = "Osher & Fedkiw, Level Set Methods and Dynamic Implicit Surfaces (2003), chapter 2"
 
-    shape: AnyShape
+    shape: AnyShape = Field(description="shape, as a body of material may have it")
     side: Literal["inside", "outside"] = Field(
         description="where the material is: inside of the shape, or outside of it"
     )
