@@ -17,7 +17,7 @@ def contact(kind, **parameters):
     return CONTACTS[kind].model_validate({"kind": kind, **parameters})
 
 
-def nodes(author, velocity, normal=FLOOR, wall=(0, 0), inner=(0, 0), depth=0.1, touched=True):
+def nodes(author, velocity, normal=FLOOR, wall=(0, 0), inner=(0, 0), depth=0.1, touched=True, pressed=0.0):
     """One node."""
     return ContactNodes(
         position=np.zeros((1, 2)),
@@ -28,6 +28,7 @@ def nodes(author, velocity, normal=FLOOR, wall=(0, 0), inner=(0, 0), depth=0.1, 
         inner=np.array([inner], dtype=float),
         depth=np.array([depth]),
         touched=np.array([touched]),
+        pressed=np.array([pressed]),
         memory=initial_memory(author, 1),
     )
 

@@ -188,6 +188,7 @@ def touching(author):
         np.ones((4, 2)),
         np.full(4, 0.1),
         np.array([True, False, True, False]),
+        np.zeros(4),
         initial_memory(author, 4),
     )
 

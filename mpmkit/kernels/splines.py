@@ -122,3 +122,11 @@ def add_sizes(dim: int):
                         sums[row + k] += w * weight[along, k]
 
     return add_sizes
+
+
+def below_surface(distance: np.ndarray) -> np.ndarray:
+    """Crowding of a node ``distance`` cells below the flat surface of a deep body: ∫ N from -∞."""
+    d = np.abs(distance)
+    inner = 0.75 * d - d**3 / 3
+    outer = 0.5 - (1.5 - np.minimum(d, 1.5)) ** 3 / 6
+    return 0.5 + np.sign(distance) * np.where(d < 0.5, inner, outer)

@@ -47,7 +47,7 @@ class SceneOperations:
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
         self.walls = Walls(case, grid, self.window, particles)
-        self.stage = Stage(scheme, grid, particles, radial, gravity)
+        self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False

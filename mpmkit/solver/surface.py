@@ -6,19 +6,12 @@ import math
 
 import numpy as np
 
+from ..kernels.splines import below_surface
 from .crowding import Crowding
 
 SOLID = 0.9
 """Crowding of the fullest node of a column from which the column has a surface that its nodes can tell."""
 STEPS = np.linspace(-1.5, 1.5, 601)
-
-
-def _below_surface(distance: np.ndarray) -> np.ndarray:
-    """Crowding of a node ``distance`` cells below the flat surface of a deep body: ∫ N from -∞."""
-    d = np.abs(distance)
-    inner = 0.75 * d - d**3 / 3
-    outer = 0.5 - (1.5 - np.minimum(d, 1.5)) ** 3 / 6
-    return 0.5 + np.sign(distance) * np.where(d < 0.5, inner, outer)
 
 
 def mean_top(found: Crowding, centre: np.ndarray, radial: bool) -> float:
@@ -56,5 +49,5 @@ def mean_top(found: Crowding, centre: np.ndarray, radial: bool) -> float:
     last = int(rows[-1])
     beyond = column[last + 1] if last + 1 < len(column) else 0.0
     node = last if column[last] - 0.5 <= 0.5 - beyond else last + 1
-    depth = float(np.interp(column[node], _below_surface(STEPS), STEPS))
+    depth = float(np.interp(column[node], below_surface(STEPS), STEPS))
     return float(places[flat][last] + dx * (depth + node - last))

@@ -156,7 +156,7 @@ def rehearse_contact(author: Contact, nodes: ContactNodes, dt: float | None = No
     which = sample(len(nodes.mass))
     read = {
         name: Fenced(getattr(nodes, name)[which], READ)
-        for name in ("position", "normal", "wall_velocity", "mass", "inner", "depth")
+        for name in ("position", "normal", "wall_velocity", "mass", "inner", "depth", "pressed")
     }
     touched = Fenced(nodes.touched[which], WRITTEN)
     velocity = Fenced(nodes.velocity[which], WRITTEN)

@@ -40,7 +40,7 @@ class BoxCells:
         scatter_pairs(self._dim, PARTS)(
             pairs, block.strides, block.lower, self._tasks, self._base, self._part, self._size, self._size
         )
-        filling = pairs[:, 0] / block.room
+        filling = block.crowded(pairs[:, 0])
         block.fold(filling)
         block.fill(filling)
         return filling

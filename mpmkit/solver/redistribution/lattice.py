@@ -32,7 +32,7 @@ class SplineLattice:
         fill_splines(position, 1 / block.spacing, self._base, self._weight)
 
     def crowding(self) -> np.ndarray:
-        crowding = self._sums(self._size, self._size)[:, 0] / self.block.room
+        crowding = self.block.crowded(self._sums(self._size, self._size)[:, 0])
         self.block.fill(crowding)
         return crowding
 

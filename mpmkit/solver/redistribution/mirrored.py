@@ -14,6 +14,8 @@ from ...kernels.vectors import LANES
 from ...registry import audit
 from ..grid import Grid, Span, Window
 
+LEAST_ROOM = 0.15
+"""Part of its room that a wall must leave a node, so that what is there tells how crowded it is."""
 PADDING = 2
 """Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
 
@@ -56,9 +58,26 @@ class Mirrored:
         self._ends = [
             (int(-low), int(n * times - low)) for low, n in zip(self.lower, grid.cells, strict=True)
         ]
-        self._centred = centred
+        self.centred = centred
         self._ghosts = self._ghost_planes()
-        self.room = self._room()
+        self._whole = self.room = self._room()
+        self._hidden = np.zeros(0, dtype=np.int64)
+
+    def places(self) -> np.ndarray:
+        """Where the nodes or cells are, m, in the scene, ``(count, dim)``."""
+        index = np.indices(self.shape).reshape(self.grid.dim, -1).T + self.lower
+        return self.grid.lower + (index + (0.5 if self.centred else 0.0)) * self.spacing
+
+    def leave(self, part: np.ndarray) -> None:
+        """Leave each only a part of its room, ``(count,)``: what walls that are no faces do not take."""
+        self.room = self._whole * np.maximum(part, LEAST_ROOM)
+        self._hidden = np.flatnonzero(part < LEAST_ROOM)
+
+    def crowded(self, sums: np.ndarray) -> np.ndarray:
+        """Sums over the room, ``(count,)``; one where walls leave too little room to tell."""
+        crowded = sums / self.room
+        crowded[self._hidden] = 1.0
+        return crowded
 
     def empty(self, width: int = 1) -> np.ndarray:
         """Zeros, ``(count, width)``, with room behind them for a row of pairs."""
@@ -93,7 +112,7 @@ class Mirrored:
 
     def _room(self) -> np.ndarray:
         room = np.full(self.shape, self.spacing**self.grid.dim)
-        if not self._centred:
+        if not self.centred:
             for axis, (first, last) in enumerate(self._ends):
                 along = np.moveaxis(room, axis, 0)
                 for side, wall in enumerate((first, last)):
@@ -105,7 +124,7 @@ class Mirrored:
         """Which nodes or cells are in the domain, each once: no ghosts, no images, ``(count,)``."""
         own = np.zeros(self.shape, dtype=bool)
         ends = [
-            (max(first, 0), last + (not self._centred and self.grid.faces[axis, 1] != PERIODIC))
+            (max(first, 0), last + (not self.centred and self.grid.faces[axis, 1] != PERIODIC))
             for axis, (first, last) in enumerate(self._ends)
         ]
         own[tuple(slice(first, max(first, end)) for first, end in ends)] = True
@@ -141,9 +160,9 @@ class Mirrored:
         """Planes of ghosts of an axis and of their images; ``first`` and ``last`` are at its ends."""
         low, high = self.grid.faces[axis]
         if low == PERIODIC:
-            ghosts = (first - 1, last) if self._centred else (first - 1, last, last + 1)
+            ghosts = (first - 1, last) if self.centred else (first - 1, last, last + 1)
             return [(ghost, first + (ghost - first) % (last - first)) for ghost in ghosts]
-        beside = 0 if self._centred else 1  # the cell at a wall is its own neighbour, a node has one
+        beside = 0 if self.centred else 1  # the cell at a wall is its own neighbour, a node has one
         planes = []
         if low != OPEN:
             planes.append((first - 1, first + beside))

@@ -17,6 +17,7 @@ from ..grid import Grid, Window
 from ..particles import Particles
 from ..sorting import Sorting
 from ..stateful import State
+from ..walls import Walls
 from .cells import BoxCells
 from .lattice import SplineLattice
 from .mirrored import Mirrored
@@ -49,7 +50,13 @@ class Stage:
     places: contract.Lattice
 
     def __init__(
-        self, scheme: Scheme, grid: Grid, particles: Particles, radial: bool, gravity: np.ndarray
+        self,
+        scheme: Scheme,
+        grid: Grid,
+        walls: Walls,
+        particles: Particles,
+        radial: bool,
+        gravity: np.ndarray,
     ) -> None:
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
@@ -57,7 +64,8 @@ class Stage:
         self._blocks: dict[tuple, Mirrored] = {}
         self._downwards = np.where(grid.periodic, 0.0, gravity)
         self._follows = scheme.shape.particle_domain != "fixed"
-        self._grid, self._particles, self._radial = grid, particles, radial
+        self._grid, self._walls = grid, walls
+        self._particles, self._radial = particles, radial
         self._times = max(1, round(grid.cell_size / self._typical_spacing()))
 
     def state(self) -> State:
@@ -134,6 +142,9 @@ class Stage:
                 known: block for known, block in self._blocks.items() if known[: len(where)] == where
             }
             self._blocks[key] = Mirrored(self._grid, window, times, centred)
+            self._walls.leave_room(self._blocks[key])
+        elif self._walls.moving:
+            self._walls.leave_room(self._blocks[key])
         return self._blocks[key]
 
     # --- For the redistribution

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...contracts import Contact, ContactNodes
 from ...kernels import walls as kernels
+from ...kernels.splines import below_surface
 from ...registry import audit
 from ..grid import Grid, Window
 from ..stateful import State, plain_state, restore_plain
@@ -33,7 +34,7 @@ class Wall:
         self.sums = np.zeros(grid.dim + (3 if grid.dim == 3 else 1) + 1)
         self._mapped = np.zeros(len(self.sums))
         self._found = self._time = self._moved = 0.0
-        self._there = False
+        self._there = self.changes = False
         self._near: WallNodes | None = None
 
     @property
@@ -69,7 +70,7 @@ class Wall:
 
     def move_to(self, time: float) -> None:
         """Be where it is at a time, s."""
-        self._there = self.surface.present(time)
+        there, self._there = self._there, self.surface.present(time)
         moved = self.surface.fastest(self._time, time) * (time - self._time) / self.grid.cell_size
         self._moved += moved
         if not self.near.found or self._moved > MARGIN:
@@ -77,6 +78,7 @@ class Wall:
             self._moved = 0.0
         if moved > 0 or not self.near.sorted:
             self._sort(time)
+        self.changes = self.changes or moved > 0 or (self._found < time and there != self._there)
         self._time = time
 
     def _find(self, time: float) -> None:
@@ -85,6 +87,13 @@ class Wall:
 
     def _sort(self, time: float) -> None:
         self.near.sort(self.surface, time)
+
+    def open_part(self, places: np.ndarray, spacing: float, cells: bool) -> np.ndarray:
+        """Part of the room of nodes, or of cells, that it leaves where it was last, ``(n,)``."""
+        if not self._there:
+            return np.ones(len(places))
+        depth = self.surface.distance(places, self._time)[0] / spacing
+        return np.clip(depth + 0.5, 0.0, 1.0) if cells else below_surface(depth)
 
     # --- What it does
 

@@ -10,6 +10,7 @@ from ...kernels import walls as kernels
 from ...registry import audit
 from ..grid import Grid, Window
 from ..particles import Particles
+from ..redistribution.mirrored import Mirrored
 from ..sorting import Sorting
 from ..stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .wall import Wall
@@ -53,6 +54,24 @@ class Walls:
             for name, wall in self.components.items():
                 own = {key.removeprefix(f"{name}/"): value for key, value in state.items()}
                 wall.lay(self.window, active, own)  # type: ignore[attr-defined]
+
+    @property
+    def moving(self) -> bool:
+        """Whether any wall moves, or may appear or vanish, as far as it has been seen."""
+        return any(wall.changes for wall in self.walls)
+
+    def leave_room(self, block: Mirrored) -> None:
+        """Tell a block of nodes or cells what part of their room the walls leave.
+
+        It is that of a plane at the same distance: the integral of the node's spline, or of its cell, over
+        what is in front of it. Where walls meet, the parts are multiplied.
+        """
+        if not self.walls:
+            return
+        places, part = block.places(), np.ones(block.count)
+        for wall in self.walls:
+            part *= wall.open_part(places, block.spacing, block.centred)
+        block.leave(part)
 
     def follow(self, sorting: Sorting) -> None:
         """Take the nodes that particles can reach from a sorting from now on."""

@@ -10,7 +10,8 @@ from .slip import Slip
 class Coulomb(Slip):
     """As ``slip``, and the drag takes at most μ times the push from the slip, and never turns it round:
 
-    u_t ← (1 - min(1, μ push / |u_t|)) u_t, with the push the normal velocity that the wall takes up.
+    u_t ← (1 - min(1, μ push / |u_t|)) u_t, with the push the normal velocity that the wall takes up, here and by
+    what is mirrored beyond it.
     """
 
     name = "coulomb"
@@ -22,10 +23,10 @@ class Coulomb(Slip):
     def solved(self, nodes: ContactNodes, dt: float) -> None:
         away, slip = nodes.slip()
         super().solved(nodes, dt)
-        pushes = nodes.memory["contact"] == 1
-        speed, grip = np.linalg.norm(slip, axis=1), self.coefficient * np.maximum(-away, 0.0)
+        push = np.maximum(-away, 0.0) + nodes.pressed
+        speed, grip = np.linalg.norm(slip, axis=1), self.coefficient * push
         lost = np.where(grip < speed, grip / np.where(speed > 0, speed, 1.0), 1.0)
-        nodes.brake(pushes, lost[:, None] * slip)
+        nodes.brake(nodes.touched, lost[:, None] * slip)
 
 
 @hookimpl
