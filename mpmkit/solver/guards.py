@@ -88,7 +88,9 @@ class Guards:
             stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
-            self.balance.update(p, self._scene.time, self._scene.redistribution_energy, self._scene.walls_work)
+            self.balance.update(
+                p, self._scene.time, self._scene.redistribution_energy, self._scene.walls_work
+            )
             if self.watches_energy and self.balance.broken:
                 self._stop_of_energy(self.balance)
         uneven = self.density.look(self._scene)

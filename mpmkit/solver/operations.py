@@ -21,8 +21,8 @@ from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
-from .walls import Walls
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .walls import Walls
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""

@@ -142,10 +142,15 @@ class Stage:
                 known: block for known, block in self._blocks.items() if known[: len(where)] == where
             }
             self._blocks[key] = Mirrored(self._grid, window, times, centred)
-            self._walls.leave_room(self._blocks[key])
+            self._leave_room(self._blocks[key])
         elif self._walls.moving:
-            self._walls.leave_room(self._blocks[key])
+            self._leave_room(self._blocks[key])
         return self._blocks[key]
+
+    def _leave_room(self, block: Mirrored) -> None:
+        """Tell a block what part of its room the walls leave that are no faces of the grid."""
+        if len(self._walls):
+            block.leave(self._walls.open_part(block.places(), block.spacing, block.centred))
 
     # --- For the redistribution
 

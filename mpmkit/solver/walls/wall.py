@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...contracts import Contact, ContactNodes
-from ...kernels import walls as kernels
+from ...kernels import ghosts, wall_contact, wall_reach
 from ...kernels.splines import below_surface
 from ...registry import audit
 from ..grid import Grid, Window
@@ -20,8 +20,8 @@ class Wall:
     """A surface with a contact, on the nodes of a window. Lengths are in cells, but for places.
 
     Attributes:
-        sums: impulse, N s, ``(dim,)``, its moment about the origin of the scene, N m s, ``(1,)`` about the axis
-            out of the plane or ``(3,)``, and work, J: all that the wall has given to the material so far.
+        sums: what the wall has given to the material so far: impulse, N s, ``(dim,)``, its moment about the
+            origin of the scene, N m s, ``(3,)`` or ``(1,)`` about the axis out of the plane, and work, J.
     """
 
     def __init__(self, name: str, surface: audit.AuditedSurface, contact: Contact, grid: Grid) -> None:
@@ -101,21 +101,22 @@ class Wall:
         """Put particles that have come into it back to its surface."""
         if self._there:
             w = self.near
-            kernels.keep_out(position, self.grid.cell_size, w.lower, w.strides, w.dense)
+            wall_reach.keep_out(position, self.grid.cell_size, w.lower, w.strides, w.dense)
 
     def mark(self, position: np.ndarray, half_size: np.ndarray, base: np.ndarray, weight: np.ndarray) -> None:
         """Find the nodes that material touches, by the boxes of the particles and their weights."""
         w = self.near
         w.touched[w.at] = 0
         if self._there:
-            kernels.mark_touched(
-                position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense, w.touched
+            wall_reach.mark_touched(
+                position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense,
+                w.touched,
             )  # fmt: skip
 
     def fold(self, momentum: bool, forces: bool) -> None:
         """Fold what lies on its ghosts."""
         w = self.near
-        kernels.fold(
+        ghosts.fold(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
             momentum, forces, w.held,
         )  # fmt: skip
@@ -123,7 +124,7 @@ class Wall:
     def act(self, rehearse: bool, dt: float | None) -> None:
         """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
         w = self.near
-        count = kernels.at_wall_velocities(
+        count = wall_contact.at_wall_velocities(
             w.window.nodes, w.at_wall, w.at, w.d, w.normal, w.index, w.weight, w.free, w.acting, w.share,
             w.stiffness, w.velocity, w.inner,
         )  # fmt: skip
@@ -140,11 +141,13 @@ class Wall:
         audit.call_contact(self.contact, nodes, dt)
         w.remember(acting, nodes.memory)
         impulse = np.zeros((count, self.grid.dim))
-        kernels.push(
+        wall_contact.push(
             w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
             nodes.velocity, self.odd, self.pulls, SWEEPS, dt is not None, impulse,
         )  # fmt: skip
-        kernels.add_up(impulse, acting, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums)
+        wall_contact.add_up(
+            impulse, acting, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums
+        )
 
     def _given(self, count: int, dt: float | None) -> ContactNodes:
         w = self.near
@@ -169,14 +172,17 @@ class Wall:
     def fill(self, dt: float | None) -> None:
         """Fill its ghosts with velocities as mapped, or as solved in a step of ``dt`` s."""
         w = self.near
-        kernels.fill(
+        ghosts.fill(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
             dt is not None, dt or 0.0, w.held, w.impulse,
         )  # fmt: skip
         sums = self._mapped if dt is None else self.sums
-        kernels.add_up(
-            w.impulse[w.ghosts], w.ghosts, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums
-        )
+        self._add_up(w.impulse[w.ghosts], w.ghosts, sums)
+
+    def _add_up(self, impulse: np.ndarray, nodes: np.ndarray, sums: np.ndarray) -> None:
+        w = self.near
+        depth = w.d * self.grid.cell_size
+        wall_contact.add_up(impulse, nodes, w.place, depth, w.normal, w.wall_velocity, sums)
 
     def taken_up(self, part: float) -> None:
         """Count the part of the impulses in mapping that reaches the particles."""

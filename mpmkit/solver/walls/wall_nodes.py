@@ -6,7 +6,7 @@ import numpy as np
 
 from ...contracts import Contact
 from ...contracts.contact import initial_memory
-from ...kernels import walls as kernels
+from ...kernels import ghosts, wall_nodes, wall_reach
 from ...kernels.nodes import FRICTION, OPEN, PERIODIC, STICK
 from ...registry import audit
 from ..grid import Grid, Window
@@ -16,9 +16,7 @@ MARGIN = 1.0
 
 
 class WallNodes:
-    """The nodes of one window near one wall, with room for what it needs of them. Lengths are in cells, but for
-    places.
-    """
+    """The nodes of one window near one wall, and what it needs of them. Lengths are in cells, places in m."""
 
     def __init__(self, contact: Contact, grid: Grid, window: Window, active: np.ndarray) -> None:
         """
@@ -41,7 +39,7 @@ class WallNodes:
         self.places = grid.lower + places * grid.cell_size
         self.free = _free_axes(grid, number)
         count = len(active)
-        self.dense = np.full(count, kernels.FAR)
+        self.dense = np.full(count, wall_nodes.FAR)
         self.touched = np.zeros(count, dtype=np.uint8)
         self._pressed = np.zeros(count)
         self._taken = np.zeros(count, dtype=np.uint8)
@@ -54,9 +52,7 @@ class WallNodes:
         shapes = [layout.window_shape for layout in (before, self)]
         high = np.minimum(before.lower + shapes[0], self.lower + shapes[1])
         if (low < high).all():
-            common = [
-                tuple(map(slice, low - layout.lower, high - layout.lower)) for layout in (before, self)
-            ]
+            common = [tuple(map(slice, low - layout.lower, high - layout.lower)) for layout in (before, self)]
             for name, array in self.memory.items():
                 array.reshape(shapes[1])[common[1]] = before.memory[name].reshape(shapes[0])[common[0]]
 
@@ -68,7 +64,7 @@ class WallNodes:
         """Find the nodes that are, or may soon be, near the surface."""
         dim = self.grid.dim
         distance, _ = surface.distance(self.places, time)
-        near = np.abs(distance) <= (kernels.NEAR + MARGIN) * self.grid.cell_size
+        near = np.abs(distance) <= (wall_reach.NEAR + MARGIN) * self.grid.cell_size
         self.at = np.flatnonzero(near)
         k = len(self.at)
         self.number = np.ascontiguousarray(self.numbers[self.at])
@@ -80,7 +76,7 @@ class WallNodes:
         self.held = np.zeros((k, 1 + 2 * dim))
         self.pair = np.zeros((k, 2))
         self.stiffness, self.velocity, self.inner, self.impulse = np.zeros((4, k, dim))
-        self.dense[:] = kernels.FAR
+        self.dense[:] = wall_nodes.FAR
         self.found, self.sorted = True, False
 
     def sort(self, surface: audit.AuditedSurface, time: float) -> None:
@@ -95,11 +91,11 @@ class WallNodes:
         self.dense[self.at] = self.d
         self._taken[:] = 0
         of_window = (self.lower, self.shape, self.strides, self.active, self._taken)
-        count, ghosts = kernels.find_nodes(
+        count, ghosts = wall_nodes.find_nodes(
             self.at, self.number, self.d, self.normal, *of_window, self._at_wall, self._ghosts, self.index,
             self.weight, self.foot, self.foot_weight,
         )  # fmt: skip
-        behind = kernels.find_images(
+        behind = wall_nodes.find_images(
             self.at, self.number, self.d, self.normal, *of_window, self._behind, self.image, self.image_weight
         )
         self.at_wall, self.ghosts = self._at_wall[:count], self._ghosts[:ghosts]
@@ -108,7 +104,7 @@ class WallNodes:
 
     def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
         """Impulse along the normal that ghosts bring, N s, at nodes at the wall."""
-        kernels.press(self.ghosts, self.normal, self.foot, self.foot_weight, self.held, dt, self._pressed)
+        ghosts.press(self.ghosts, self.normal, self.foot, self.foot_weight, self.held, dt, self._pressed)
         found = np.maximum(self._pressed[self.at[acting]], 0.0)
         self._pressed[self.at] = 0.0
         return found

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...case.model import Case
+from ...kernels import ghosts
 from ...kernels import nodes as node_kernels
-from ...kernels import walls as kernels
 from ...registry import audit
 from ..grid import Grid, Window
 from ..particles import Particles
-from ..redistribution.mirrored import Mirrored
 from ..sorting import Sorting
 from ..stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .wall import Wall
@@ -60,18 +59,16 @@ class Walls:
         """Whether any wall moves, or may appear or vanish, as far as it has been seen."""
         return any(wall.changes for wall in self.walls)
 
-    def leave_room(self, block: Mirrored) -> None:
-        """Tell a block of nodes or cells what part of their room the walls leave.
+    def open_part(self, places: np.ndarray, spacing: float, cells: bool) -> np.ndarray:
+        """Part of the room of nodes, or of cells, at some places, m, that the walls leave, ``(n,)``.
 
         It is that of a plane at the same distance: the integral of the node's spline, or of its cell, over
         what is in front of it. Where walls meet, the parts are multiplied.
         """
-        if not self.walls:
-            return
-        places, part = block.places(), np.ones(block.count)
+        part = np.ones(len(places))
         for wall in self.walls:
-            part *= wall.open_part(places, block.spacing, block.centred)
-        block.leave(part)
+            part *= wall.open_part(places, spacing, cells)
+        return part
 
     def follow(self, sorting: Sorting) -> None:
         """Take the nodes that particles can reach from a sorting from now on."""
@@ -141,7 +138,7 @@ class Walls:
         """Fold the sums of an average."""
         for wall in self.walls:
             w = wall.near
-            kernels.fold_pairs(pairs, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
+            ghosts.fold_pairs(pairs, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
 
     def fill_average(self, average: np.ndarray) -> None:
         """Fill an average, that of the ghosts of the faces too."""
@@ -149,6 +146,6 @@ class Walls:
             return
         for wall in reversed(self.walls):
             w = wall.near
-            kernels.fill_average(average, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
+            ghosts.fill_average(average, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
         active = self.sorting.active
         node_kernels.fill(average, active.faces, active.mirrors, active.plane_first, 0, 1, False)

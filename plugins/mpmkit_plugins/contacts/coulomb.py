@@ -10,8 +10,8 @@ from .slip import Slip
 class Coulomb(Slip):
     """As ``slip``, and the drag takes at most μ times the push from the slip, and never turns it round:
 
-    u_t ← (1 - min(1, μ push / |u_t|)) u_t, with the push the normal velocity that the wall takes up, here and by
-    what is mirrored beyond it.
+    u_t ← (1 - min(1, μ push / |u_t|)) u_t, with the push the normal velocity that the wall takes up, here and
+    by what is mirrored beyond it.
     """
 
     name = "coulomb"

@@ -1,0 +1,138 @@
+"""Ghosts behind a wall that may stand anywhere: they continue what is in front of it, as a mirror does.
+
+A ghost has v_ghost = w + R (v_image - w). R reverses the normal part (mirror), or all of it (odd). What
+particles put on a ghost is folded onto the nodes around its image, with the weights by which it is filled
+back: the two are transposes of each other. Averages of scalars fold and fill all nodes behind the wall.
+
+``nodes`` is (count, NODE), see ``scatter``. There are few ghosts, and these loops run in one thread.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .compile import function
+
+
+@function()
+def _reflect(vector, m, w, normal, odd, out):
+    """out = m w + R (vector - m w): the part against the wall reversed along the normal, or all of it."""
+    along = 0.0
+    for a in range(len(normal)):
+        along += (vector[a] - m * w[a]) * normal[a]
+    for a in range(len(normal)):
+        out[a] = 2.0 * m * w[a] - vector[a] if odd else vector[a] - 2.0 * along * normal[a]
+
+
+@function()
+def fold(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, momentum, forces, held):
+    """Add what lies on touched ghosts to the nodes around their images, and clear the ghosts.
+
+    ``held`` (k, 1 + 2 dim) keeps mass, momentum and force of each, for its share in the force of the wall.
+    """
+    dim = normal.shape[1]
+    first, last = 0 if momentum else 1 + dim, 1 + (2 if forces else 1) * dim
+    v, f, none = np.empty(dim), np.empty(dim), np.zeros(dim)
+    for k in ghost:
+        g = at[k]
+        held[k, first:last] = 0.0
+        if not touched[g] or weight[k, 0] < 0.0:
+            continue
+        for q in range(first, last):
+            held[k, q] = nodes[g, q]
+            nodes[g, q] = 0.0
+        m = held[k, 0]
+        if momentum:
+            _reflect(held[k, 1 : 1 + dim], m, wall_velocity[k], normal[k], odd, v)
+        if forces:
+            _reflect(held[k, 1 + dim :], 0.0, none, normal[k], odd, f)
+        for c in range(index.shape[1]):
+            w, i = weight[k, c], index[k, c]
+            if momentum:
+                nodes[i, 0] += w * m
+                for a in range(dim):
+                    nodes[i, 1 + a] += w * v[a]
+            if forces:
+                for a in range(dim):
+                    nodes[i, 1 + dim + a] += w * f[a]
+
+
+@function()
+def fill(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, solved, dt, held, impulse):
+    """Give touched ghosts the velocity of their images, mirrored; the transpose of ``fold``.
+
+    ``impulse`` (k, dim) gets what the wall has given by each ghost, N s, with m, p and f of the ghost: in
+    mapping m (v_ghost - v_image) + R p - p, and once ``solved`` m (Δv_ghost - Δv_image) + dt (R f - f).
+    """
+    dim = normal.shape[1]
+    v, change, folded, none = np.empty(dim), np.empty(dim), np.empty(dim), np.zeros(dim)
+    for k in ghost:
+        g = at[k]
+        impulse[k, :] = 0.0
+        if not touched[g] or weight[k, 0] < 0.0:
+            continue
+        v[:] = 0.0
+        change[:] = 0.0
+        for c in range(index.shape[1]):
+            for a in range(dim):
+                v[a] += weight[k, c] * nodes[index[k, c], 1 + a]
+                change[a] += weight[k, c] * nodes[index[k, c], 1 + dim + a]
+        m = held[k, 0]
+        _reflect(v, 1.0, wall_velocity[k], normal[k], odd, nodes[g, 1 : 1 + dim])
+        if solved:
+            _reflect(change, 0.0, none, normal[k], odd, nodes[g, 1 + dim : 1 + 2 * dim])
+            _reflect(held[k, 1 + dim :], 0.0, none, normal[k], odd, folded)
+            for a in range(dim):
+                impulse[k, a] = m * (nodes[g, 1 + dim + a] - change[a]) + dt * (
+                    folded[a] - held[k, 1 + dim + a]
+                )
+        else:
+            _reflect(held[k, 1 : 1 + dim], m, wall_velocity[k], normal[k], odd, folded)
+            for a in range(dim):
+                impulse[k, a] = m * (nodes[g, 1 + a] - v[a]) + folded[a] - held[k, 1 + a]
+
+
+@function()
+def press(ghost, normal, foot, foot_weight, held, dt, pressed):
+    """Add to ``pressed`` (nodes,) of the nodes at the wall what it gives along its normal by the ghosts, N s:
+    dt (R f - f)·n = -2 dt f·n of each."""
+    dim = normal.shape[1]
+    for k in ghost:
+        if foot_weight[k, 0] >= 0.0:
+            given = 0.0
+            for a in range(dim):
+                given -= 2.0 * dt * held[k, 1 + dim + a] * normal[k, a]
+            for c in range(foot.shape[1]):
+                pressed[foot[k, c]] += foot_weight[k, c] * given
+
+
+@function()
+def fold_pairs(pairs, behind, at, index, weight, touched, held):
+    """Add the sums of an average at touched ghosts to the nodes around their images, and clear them."""
+    for k in behind:
+        g = at[k]
+        held[k, 0] = held[k, 1] = 0.0
+        if touched[g]:
+            held[k, 0], held[k, 1] = pairs[g, 0], pairs[g, 1]
+            pairs[g, 0] = pairs[g, 1] = 0.0
+    for k in behind:
+        if held[k, 0] != 0.0:
+            for c in range(index.shape[1]):
+                if weight[k, c] > 0.0:
+                    pairs[index[k, c], 0] += weight[k, c] * held[k, 0]
+                    pairs[index[k, c], 1] += weight[k, c] * held[k, 1]
+
+
+@function()
+def fill_average(average, behind, at, index, weight, touched, held):
+    """Give touched ghosts the average at their images."""
+    for k in behind:
+        g = at[k]
+        if touched[g]:
+            value = 0.0
+            for c in range(index.shape[1]):
+                value += weight[k, c] * average[index[k, c], 0]
+            held[k, 0] = value
+    for k in behind:
+        if touched[at[k]]:
+            average[at[k], 0] = held[k, 0]

@@ -1,0 +1,195 @@
+"""What a wall that may stand anywhere does to the nodes at it.
+
+The velocity of the material at the wall is that of the line through a node and its image,
+
+    v_wall = a v_node + b v_image,   a = 1 + d,  b = -d,
+
+with the signed distance d of the node, in cells. What the wall does is an impulse λ at that place. The nodes
+share it by the same weights C: of all changes that give the velocity at the wall its due, C λ / m of each has
+the least energy. A wall that lies on nodes has a = 1 and b = 0, and acts on these nodes alone.
+
+What was tried otherwise, and what it gave, is in docs/findings.md.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .compile import function
+
+
+@function()
+def at_wall_velocities(
+    nodes, at_wall, at, distance, normal, index, weight, free, acting, share, stiffness, velocity, inner
+):
+    """Velocity of the material at a wall, and how easily it is changed there.
+
+    Args:
+        free: (k,) bits of the axes along which no face of the grid holds the node.
+        acting: (k,) which nodes have mass (out).
+        share: (k, 1 + 2^dim) weights C of the node and of those around its image (out).
+        stiffness: (k, dim) Σ C² / m along each axis, 1/kg (out).
+        velocity, inner: (k, dim) at the wall and at the image (out).
+
+    Returns:
+        How many have mass.
+    """
+    dim = normal.shape[1]
+    corners = index.shape[1]
+    count = 0
+    for k in at_wall:
+        g = at[k]
+        if not nodes[g, 0] > 0.0:
+            continue
+        total = 0.0
+        for c in range(corners):  # no weight is above 0 where there is no image
+            if weight[k, c] > 0.0 and nodes[index[k, c], 0] > 0.0:
+                total += weight[k, c]
+        d = distance[k]
+        a, b = (1.0 + d, -d) if total > 0.0 else (1.0, 0.0)  # D - d = 1 cell
+        share[count, 0] = a
+        for e in range(dim):
+            velocity[count, e] = a * nodes[g, 1 + e]
+            inner[count, e] = 0.0 if total > 0.0 else nodes[g, 1 + e]
+            stiffness[count, e] = 0.0
+        own = a
+        for c in range(corners):
+            i = index[k, c]
+            part = 0.0
+            if total > 0.0 and weight[k, c] > 0.0 and nodes[i, 0] > 0.0:
+                part = weight[k, c] / total
+            share[count, 1 + c] = b * part
+            for e in range(dim):
+                velocity[count, e] += b * part * nodes[i, 1 + e]
+                inner[count, e] += part * nodes[i, 1 + e]
+            if part > 0.0:
+                if i == g:
+                    own += b * part
+                else:
+                    for e in range(dim):
+                        if free[i] >> e & 1:
+                            stiffness[count, e] += (b * part) ** 2 / nodes[i, 0]
+        for e in range(dim):
+            if free[g] >> e & 1:
+                stiffness[count, e] += own * own / nodes[g, 0]
+        acting[count] = k
+        count += 1
+    return count
+
+
+@function()
+def _give(nodes, g, index, share, free, dim, impulse, solved):
+    """An impulse at the wall, shared among the nodes."""
+    for c in range(len(share)):
+        if share[c] != 0.0:
+            i = g if c == 0 else index[c - 1]
+            for e in range(dim):
+                if free[i] >> e & 1:
+                    change = share[c] * impulse[e] / nodes[i, 0]
+                    nodes[i, 1 + e] += change
+                    if solved:
+                        nodes[i, 1 + dim + e] += change
+
+
+@function()
+def _velocity(nodes, g, index, share, dim, velocity):
+    for e in range(dim):
+        velocity[e] = share[0] * nodes[g, 1 + e]
+    for c in range(1, len(share)):
+        if share[c] != 0.0:
+            for e in range(dim):
+                velocity[e] += share[c] * nodes[index[c - 1], 1 + e]
+
+
+@function()
+def push(
+    nodes,
+    acting,
+    at,
+    normal,
+    index,
+    free,
+    share,
+    stiffness,
+    before,
+    after,
+    whole,
+    pulls,
+    sweeps,
+    solved,
+    impulse,
+):
+    """Give the nodes the impulses that change the velocities at the wall from ``before`` to ``after``.
+
+    Nodes share neighbours, so that one impulse disturbs the next: what the wall holds is put right in some
+    sweeps, the normal part or, with ``whole``, all of it. Without ``pulls`` no impulse may come to pull.
+
+    Returns in ``impulse`` (k, dim), N s.
+    """
+    dim = normal.shape[1]
+    count = len(acting)
+    step = np.empty(dim)
+    held = np.zeros(count, dtype=np.uint8)
+    for j in range(count):
+        k = acting[j]
+        resist = along = 0.0
+        for e in range(dim):
+            resist += normal[k, e] ** 2 * stiffness[j, e]
+            along += normal[k, e] * (after[j, e] - before[j, e])
+            held[j] |= after[j, e] != before[j, e]
+        for e in range(dim):
+            across = after[j, e] - before[j, e] - along * normal[k, e]
+            step[e] = across / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
+            if resist > 0.0:
+                step[e] += along / resist * normal[k, e]
+            impulse[j, e] = step[e]
+        if held[j]:
+            _give(nodes, at[k], index[k], share[j], free, dim, step, solved)
+    velocity = np.empty(dim)
+    for _ in range(sweeps):
+        for j in range(count):
+            if not held[j]:
+                continue
+            k = acting[j]
+            _velocity(nodes, at[k], index[k], share[j], dim, velocity)
+            resist = along = pushed = 0.0
+            for e in range(dim):
+                resist += normal[k, e] ** 2 * stiffness[j, e]
+                along += normal[k, e] * (after[j, e] - velocity[e])
+                pushed += normal[k, e] * impulse[j, e]
+            if whole:
+                for e in range(dim):
+                    step[e] = (after[j, e] - velocity[e]) / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
+            else:
+                more = along / resist if resist > 0.0 else 0.0
+                if not pulls:
+                    more = max(more, -pushed)
+                for e in range(dim):
+                    step[e] = more * normal[k, e]
+            for e in range(dim):
+                impulse[j, e] += step[e]
+            _give(nodes, at[k], index[k], share[j], free, dim, step, solved)
+
+
+@function()
+def add_up(impulse, nodes, place, distance, normal, wall_velocity, sums):
+    """Add impulses (n, dim), N s, of some ``nodes`` to the sums of a wall: itself, its moment, its work.
+
+    The moment is about the origin of the scene, N m s: x × λ in 3-D, and its part out of the plane, about
+    the axis y, in two dimensions. The work is λ·w, J.
+    """
+    dim = impulse.shape[1]
+    turns = len(sums) - dim - 1
+    x = np.empty(dim)
+    for j in range(len(nodes)):
+        k = nodes[j]
+        for a in range(dim):
+            x[a] = place[k, a] - distance[k] * normal[k, a]
+            sums[a] += impulse[j, a]
+            sums[dim + turns] += impulse[j, a] * wall_velocity[k, a]
+        if dim == 2:
+            sums[dim] += x[1] * impulse[j, 0] - x[0] * impulse[j, 1]
+        else:
+            for a in range(3):
+                b, c = (a + 1) % 3, (a + 2) % 3
+                sums[3 + a] += x[b] * impulse[j, c] - x[c] * impulse[j, b]

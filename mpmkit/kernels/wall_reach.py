@@ -1,0 +1,91 @@
+"""Particles at a wall that may stand anywhere: how far away they are, and which nodes they make it touch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .compile import function
+from .wall_nodes import FAR
+
+NEAR = 2.8
+"""Cells from a wall within which a node of a particle's cell is, if the particle's box may reach the wall."""
+TOUCH = 0.02
+"""Cells from a wall within which a box touches it."""
+
+
+@function()
+def _distance(x, inverse, lower, strides, distance, slope):
+    """Distance of a place from the wall, in cells, and its slope along each axis (out); ``FAR`` if it is far.
+
+    It is interpolated between the nodes of the cell.
+    """
+    dim = len(x)
+    first = 0
+    for a in range(dim):
+        first += (int(np.floor(x[a] * inverse)) - lower[a]) * strides[a]
+    if not distance[first] < NEAR:
+        return FAR
+    d = 0.0
+    slope[:] = 0.0
+    for k in range(1 << dim):
+        at, w = first, 1.0
+        for a in range(dim):
+            part = x[a] * inverse - np.floor(x[a] * inverse)
+            at += (k >> a & 1) * strides[a]
+            w *= part if k >> a & 1 else 1.0 - part
+        d += w * distance[at]
+        for a in range(dim):
+            s = distance[at] if k >> a & 1 else -distance[at]
+            for e in range(dim):
+                if e != a:
+                    part = x[e] * inverse - np.floor(x[e] * inverse)
+                    s *= part if k >> e & 1 else 1.0 - part
+            slope[a] += s
+    return d
+
+
+@function()
+def keep_out(position, cell_size, lower, strides, distance):
+    """Put particles that have come into the wall back to its surface, along the normal; how many."""
+    inverse, count = 1 / cell_size, 0
+    slope = np.empty(position.shape[1])
+    for p in range(len(position)):
+        d = _distance(position[p], inverse, lower, strides, distance, slope)
+        if d < 0.0:
+            square = (slope * slope).sum()
+            if square > 0.25:  # in the middle of a thin wall no side is nearer
+                for a in range(len(slope)):
+                    position[p, a] -= d * slope[a] / square * cell_size
+                count += 1
+    return count
+
+
+@function()
+def mark_touched(position, half_size, inverse, base, weight, lower, strides, distance, touched):
+    """Mark the nodes on which a particle has weight whose box reaches the wall.
+
+    Args:
+        distance: (nodes,) of the window, in cells; ``FAR`` away from the wall.
+        touched: (nodes,) uint8 (out).
+    """
+    n, dim = position.shape
+    support = weight.shape[2]
+    planes = support if dim == 3 else 1
+    slope = np.empty(dim)
+    for p in range(n):
+        d = _distance(position[p], inverse, lower, strides, distance, slope)
+        reach = TOUCH
+        for a in range(dim):
+            reach += half_size[p, a] * inverse * abs(slope[a])
+        if not d <= reach:
+            continue
+        first = 0
+        for a in range(dim):
+            first += (base[p, a] - lower[a]) * strides[a]
+        for i in range(support):
+            for j in range(planes):
+                row = first + i * strides[0] + j * strides[1] * (dim - 2)
+                w = weight[p, 0, i] * (weight[p, 1, j] if dim == 3 else 1.0)
+                for k in range(support):
+                    if w * weight[p, dim - 1, k] > 0.0:
+                        touched[row + k] = 1
