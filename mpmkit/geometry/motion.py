@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
@@ -24,6 +24,9 @@ class Motion(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    uniform: ClassVar[bool] = True
+    """Whether all points have the same velocity."""
 
     @abstractmethod
     def vectors(self) -> dict[str, list[float]]:
@@ -181,6 +184,7 @@ class Rotation(Spell):
     positive rate turns x towards z.
     """
 
+    uniform = False
     kind: Literal["rotation"]
     point: list[float] = quantity("m", "a point of the axis", min_length=2, max_length=3)
     axis: list[float] | None = Field(

@@ -39,6 +39,8 @@ class MovingSolid:
         """m/s, (k, dim), of the wall at the points of its surface nearest to ``x``."""
         if self.motion is None:
             return np.zeros(x.shape)
+        if self.motion.uniform:
+            return self.motion.velocities(x, t)
         distance, normal = self.distance(x, t)
         return self.motion.velocities(x - distance[:, None] * normal, t)
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .compile import function
-from .wall_nodes import FAR
+from .compile import function, inline
 
 NEAR = 2.8
 """Cells from a wall within which a node of a particle's cell is, if the particle's box may reach the wall."""
@@ -15,16 +14,11 @@ TOUCH = 0.02
 
 @function()
 def _distance(x, inverse, lower, strides, distance, slope):
-    """Distance of a place from the wall, in cells, and its slope along each axis (out); ``FAR`` if it is far.
-
-    It is interpolated between the nodes of the cell.
-    """
+    """Distance of a place near the wall, in cells, between the nodes of its cell, and its slopes (out)."""
     dim = len(x)
     first = 0
     for a in range(dim):
         first += (int(np.floor(x[a] * inverse)) - lower[a]) * strides[a]
-    if not distance[first] < NEAR:
-        return FAR
     d = 0.0
     slope[:] = 0.0
     for k in range(1 << dim):
@@ -44,12 +38,23 @@ def _distance(x, inverse, lower, strides, distance, slope):
     return d
 
 
+@inline()
+def _is_near(position, p, inverse, lower, strides, distance):
+    """Whether particle p is in a cell near the wall, by the first node of the cell."""
+    first = 0
+    for a in range(position.shape[1]):
+        first += (int(position[p, a] * inverse) - lower[a]) * strides[a]
+    return distance[first] < NEAR
+
+
 @function()
 def keep_out(position, cell_size, lower, strides, distance):
     """Put particles that have come into the wall back to its surface, along the normal; how many."""
     inverse, count = 1 / cell_size, 0
     slope = np.empty(position.shape[1])
     for p in range(len(position)):
+        if not _is_near(position, p, inverse, lower, strides, distance):
+            continue
         d = _distance(position[p], inverse, lower, strides, distance, slope)
         if d < 0.0:
             square = (slope * slope).sum()
@@ -73,6 +78,8 @@ def mark_touched(position, half_size, inverse, base, weight, lower, strides, dis
     planes = support if dim == 3 else 1
     slope = np.empty(dim)
     for p in range(n):
+        if not _is_near(position, p, inverse, lower, strides, distance):
+            continue
         d = _distance(position[p], inverse, lower, strides, distance, slope)
         reach = TOUCH
         for a in range(dim):

@@ -10,7 +10,7 @@ from ...kernels.splines import below_surface
 from ...registry import audit
 from ..grid import Grid, Window
 from ..stateful import State, plain_state, restore_plain
-from .wall_nodes import MARGIN, WallNodes
+from .wall_nodes import LAG, MARGIN, WallNodes
 
 SWEEPS = 3
 """Turns in which the impulses at neighbouring places are brought together."""
@@ -33,7 +33,7 @@ class Wall:
         self.pulls = contact.pulls
         self.sums = np.zeros(grid.dim + (3 if grid.dim == 3 else 1) + 1)
         self._mapped = np.zeros(len(self.sums))
-        self._found = self._time = self._moved = 0.0
+        self._found = self._sorted = self._time = self._moved = self._lag = 0.0
         self._there = self.changes = False
         self._near: WallNodes | None = None
 
@@ -64,7 +64,10 @@ class Wall:
             for name, array in self._near.memory.items():
                 array[...] = state[f"memory/{name}"]
             self._find(self._found)
-            self._sort(self._time)
+            lag = self._lag
+            self._sort(self._sorted)
+            self._lag = lag
+            self.near.speed(self.surface, self._time)
         elif before is not None:
             self._near.take_memory(before)
 
@@ -73,11 +76,14 @@ class Wall:
         there, self._there = self._there, self.surface.present(time)
         moved = self.surface.fastest(self._time, time) * (time - self._time) / self.grid.cell_size
         self._moved += moved
+        self._lag += moved
         if not self.near.found or self._moved > MARGIN:
             self._find(time)
             self._moved = 0.0
-        if moved > 0 or not self.near.sorted:
+        if self._lag > LAG or not self.near.sorted:
             self._sort(time)
+        elif moved > 0:
+            self.near.speed(self.surface, time)
         self.changes = self.changes or moved > 0 or (self._found < time and there != self._there)
         self._time = time
 
@@ -86,6 +92,7 @@ class Wall:
         self.near.find(self.surface, time)
 
     def _sort(self, time: float) -> None:
+        self._sorted, self._lag = time, 0.0
         self.near.sort(self.surface, time)
 
     def open_part(self, places: np.ndarray, spacing: float, cells: bool) -> np.ndarray:

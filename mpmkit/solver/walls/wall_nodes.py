@@ -11,6 +11,8 @@ from ...kernels.nodes import FRICTION, OPEN, PERIODIC, STICK
 from ...registry import audit
 from ..grid import Grid, Window
 
+LAG = 0.02
+"""Cells that a wall may move before the nodes are sorted anew; its velocity is that of the moment."""
 MARGIN = 1.0
 """Cells that a wall may move before the nodes near it are looked for anew."""
 
@@ -65,7 +67,7 @@ class WallNodes:
         dim = self.grid.dim
         distance, _ = surface.distance(self.places, time)
         near = np.abs(distance) <= (wall_reach.NEAR + MARGIN) * self.grid.cell_size
-        self.at = np.flatnonzero(near)
+        self.at = np.flatnonzero(near & (self.active > 0))
         k = len(self.at)
         self.number = np.ascontiguousarray(self.numbers[self.at])
         self.place = np.ascontiguousarray(self.places[self.at])
@@ -82,11 +84,9 @@ class WallNodes:
     def sort(self, surface: audit.AuditedSurface, time: float) -> None:
         """Tell the nodes at the wall, the ghosts, and the nodes around the image of each."""
         distance, self.normal = surface.distance(self.place, time)
-        self.wall_velocity = surface.velocity(self.place, time)
         if self.grid.radial:  # a node behind the axis sees the image of the wall
-            behind = self.number[:, 0] < 0
-            self.normal[behind, 0] *= -1.0
-            self.wall_velocity[behind, 0] *= -1.0
+            self.normal[self.number[:, 0] < 0, 0] *= -1.0
+        self.speed(surface, time)
         self.d = distance / self.grid.cell_size
         self.dense[self.at] = self.d
         self._taken[:] = 0
@@ -108,6 +108,12 @@ class WallNodes:
         found = np.maximum(self._pressed[self.at[acting]], 0.0)
         self._pressed[self.at] = 0.0
         return found
+
+    def speed(self, surface: audit.AuditedSurface, time: float) -> None:
+        """Take the velocity of the wall at a time, s."""
+        self.wall_velocity = surface.velocity(self.place, time)
+        if self.grid.radial:
+            self.wall_velocity[self.number[:, 0] < 0, 0] *= -1.0
 
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
         """Keep what a contact remembers; nodes at which it does not act forget."""
