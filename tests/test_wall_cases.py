@@ -18,6 +18,8 @@ from mpmkit.solver.scene import make_particles
 
 FRUSTUM = {"kind": "frustum", "bottom_radius": 0.1, "top_radius": 0.05, "height": 0.3}
 BALL = {"kind": "sphere", "centre": [0, 0.1], "radius": 0.4}
+BOX = {"kind": "box", "lower": [0.4, 0], "upper": [0.5, 0.2]}
+ROD = {"kind": "cylinder", "radius": 0.009, "height": 0.2}
 LIFT = {"kind": "velocity", "velocity": [0, 0.3], "start": 0}
 MOULD = {
     "surface": {"kind": "body", "shape": dict(FRUSTUM), "side": "inside", "thickness": 0.02, "motion": LIFT},
@@ -99,7 +101,7 @@ BAD = [
     ("walls.mould.contac", "slip", "walls.mould has an unknown key 'contac'; did you mean 'contact'?"),
     (f"{MOTION}.kind", "spin", 'did you mean "rotation"?'),
     # the surface
-    (f"{SURFACE}.thickness", 0.019, "walls.mould.surface.thickness is 0.019 m, less than a cell of 0.02 m"),
+    (f"{SURFACE}.thickness", 0.019, "walls.mould.surface is 0.019 m thick, less than a cell of 0.02 m"),
     (f"{SURFACE}.thickness", 0, "thickness is 0; it must be a number above 0, in m"),
     (f"{SURFACE}.side", "within", 'it must be "inside" or "outside"'),
     (
@@ -201,6 +203,22 @@ def test_a_bad_wall_is_one_sentence(path, value, part):
         (
             {"kind": "body", "shape": FRUSTUM, "side": "inside", "open": ["top"]},
             "open is ['top'], but only a shell has ends that can be open: give its thickness",
+        ),
+        (
+            {
+                "kind": "body",
+                "shape": {"kind": "box", "lower": [0.4, 0], "upper": [0.415, 0.2]},
+                "side": "outside",
+            },
+            "walls.mould.surface is 0.015 m thick, less than a cell of 0.02 m",
+        ),
+        (
+            {
+                "kind": "body",
+                "shape": {"kind": "cylinder", "radius": 0.009, "height": 0.2},
+                "side": "outside",
+            },
+            "walls.mould.surface is 0.018 m thick",
         ),
         ({"kind": "body", "shape": {"kind": "mesh", "file": "x.stl"}, "side": "inside"}, "only in 3d"),
     ],

@@ -54,8 +54,8 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
     cell = case.grid.cell_size
     if surface.thickness < cell * (1 - ROUNDING):
         raise ValueError(
-            f"{where}.thickness is {surface.thickness:g} m, less than a cell of {cell:g} m; a wall with room "
-            "for material on both sides must be at least a cell thick"
+            f"{where} is {surface.thickness:g} m thick, less than a cell of {cell:g} m; a wall with room for "
+            "material on both sides must be at least a cell thick"
         )
     if not any(_reaches(surface, case.domain_bounds, case, time) for time in _times(surface, case)):
         raise ValueError(

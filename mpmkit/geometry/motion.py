@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
@@ -24,6 +24,9 @@ class Motion(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    turns: ClassVar[bool] = False
+    """Whether points of the body have different velocities."""
 
     @abstractmethod
     def vectors(self) -> dict[str, list[float]]:
@@ -180,6 +183,8 @@ class Rotation(Spell):
     In 3-D it turns by the right-hand rule about ``axis``. In plane strain the axis is out of the plane, and a
     positive rate turns x towards z.
     """
+
+    turns = True
 
     kind: Literal["rotation"]
     point: list[float] = quantity("m", "a point of the axis", min_length=2, max_length=3)

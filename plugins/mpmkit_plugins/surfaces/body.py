@@ -70,7 +70,8 @@ class BodySurface(RigidSurface):
 
     def placed(self, space: Space) -> MovingSolid:
         if self.side == "outside":
-            return self.moving(self.shape.solid(space))
+            obstacle = self.shape.solid(space)
+            return self.moving(obstacle, obstacle.extent())
         if self.thickness is None:
             return self.moving(Inverted(self.shape.solid(space)))
         return self.moving(self.shape.shell(space, self.thickness, self.open), self.thickness)
