@@ -2,6 +2,7 @@
 
 import copy
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -271,6 +272,10 @@ def test_a_wall_that_comes_into_the_domain_is_allowed():
     plunger = {"kind": "plane", "point": [0, 0.6], "normal": [0, -1]}
     plunger["motion"] = {"kind": "velocity", "velocity": [0, -5.0]}
     parse_case(changed("walls.plunger", {"surface": plunger, "contact": "slip"}))
+    parse_case(changed("walls.plunger", {"surface": plunger | {"appears": 0.08}, "contact": "slip"}))
+    assert "walls.plunger.surface is outside" in sentence(
+        changed("walls.plunger", {"surface": plunger | {"vanishes": 0.04}, "contact": "slip"})
+    )
     plunger["motion"] = {"kind": "velocity", "velocity": [0, -1.0]}
     assert "walls.plunger.surface is outside" in sentence(
         changed("walls.plunger", {"surface": plunger, "contact": "slip"})
@@ -284,6 +289,11 @@ def test_a_case_without_walls_has_none():
     case = parse_case(changed("walls", ABSENT))
     assert case.walls == {}
     assert resolved(case)["walls"] == {}
+
+
+def test_a_case_with_walls_can_go_to_another_process():
+    case = parse_case(SLUMP)
+    assert pickle.loads(pickle.dumps(case)) == case
 
 
 def test_the_resolved_case_is_the_same_case():
