@@ -17,6 +17,8 @@ TIMES = 64
 """Times in a run at which a wall near the domain is looked for."""
 POINTS = 1 << 14
 """Most points of the domain at which it is looked for."""
+MOST_SPEED = 1e6
+"""m/s; faster than anything that a wall is, and slow enough for what follows from it to be a number."""
 ROUNDING = 1e-9
 """Part of a cell by which a shell may be thinner than one."""
 
@@ -56,6 +58,9 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
             f"{where} is {surface.thickness:g} m thick, less than a cell of {cell:g} m; a wall with room for "
             "material on both sides must be at least a cell thick"
         )
+    fastest = surface.fastest(0.0, case.until)
+    if fastest > MOST_SPEED:
+        raise ValueError(f"{where} moves at {fastest:.3g} m/s; it must be at most {MOST_SPEED:g} m/s")
     if not _comes_into_the_domain(surface, case):
         raise ValueError(
             f"{where} is outside the domain of the grid at all times of the run, so that no material can "
