@@ -2,6 +2,9 @@
 
 import copy
 import json
+import pickle
+import re
+from itertools import islice, product
 
 import numpy as np
 import pytest
@@ -18,6 +21,8 @@ from mpmkit.solver.scene import make_particles
 
 FRUSTUM = {"kind": "frustum", "bottom_radius": 0.1, "top_radius": 0.05, "height": 0.3}
 BALL = {"kind": "sphere", "centre": [0, 0.1], "radius": 0.4}
+BOX = {"kind": "box", "lower": [0.4, 0], "upper": [0.5, 0.2]}
+ROD = {"kind": "cylinder", "radius": 0.009, "height": 0.2}
 LIFT = {"kind": "velocity", "velocity": [0, 0.3], "start": 0}
 MOULD = {
     "surface": {"kind": "body", "shape": dict(FRUSTUM), "side": "inside", "thickness": 0.02, "motion": LIFT},
@@ -69,6 +74,19 @@ def sentence(data, overrides=()):
 
 SURFACE, SHAPE, MOTION = "walls.mould.surface", "walls.mould.surface.shape", "walls.mould.surface.motion"
 BAD = [
+    # numbers
+    (
+        f"{MOTION}.velocity",
+        [0, 1e300],
+        "motion.velocity.1 is 1e+300; it must be between -1e+09 and 1e+09",
+    ),
+    (f"{MOTION}.velocity", [0, 1e7], "walls.mould.surface moves at 1e+07 m/s; it must be at most 1e+06 m/s"),
+    (f"{SHAPE}.height", 1e-300, "the frustum is so flat that a shell of it has no end"),
+    (
+        MOTION,
+        {"kind": "table", "times": [0, 1e-300], "positions": [[0, 0], [0, 1]]},
+        "positions go from [0.0, 0.0] to [0.0, 1.0] in 1e-300 s, which is too fast",
+    ),
     # names
     ("walls.z_min", MOULD, "a wall called 'z_min', which is the name of a face of the grid"),
     ("walls.my mould", MOULD, "a wall called \"my mould\"; its name must be of letters, digits, '_' and '-'"),
@@ -99,7 +117,7 @@ BAD = [
     ("walls.mould.contac", "slip", "walls.mould has an unknown key 'contac'; did you mean 'contact'?"),
     (f"{MOTION}.kind", "spin", 'did you mean "rotation"?'),
     # the surface
-    (f"{SURFACE}.thickness", 0.019, "walls.mould.surface.thickness is 0.019 m, less than a cell of 0.02 m"),
+    (f"{SURFACE}.thickness", 0.019, "walls.mould.surface is 0.019 m thick, less than a cell of 0.02 m"),
     (f"{SURFACE}.thickness", 0, "thickness is 0; it must be a number above 0, in m"),
     (f"{SURFACE}.side", "within", 'it must be "inside" or "outside"'),
     (
@@ -202,6 +220,22 @@ def test_a_bad_wall_is_one_sentence(path, value, part):
             {"kind": "body", "shape": FRUSTUM, "side": "inside", "open": ["top"]},
             "open is ['top'], but only a shell has ends that can be open: give its thickness",
         ),
+        (
+            {
+                "kind": "body",
+                "shape": {"kind": "box", "lower": [0.4, 0], "upper": [0.415, 0.2]},
+                "side": "outside",
+            },
+            "walls.mould.surface is 0.015 m thick, less than a cell of 0.02 m",
+        ),
+        (
+            {
+                "kind": "body",
+                "shape": {"kind": "cylinder", "radius": 0.009, "height": 0.2},
+                "side": "outside",
+            },
+            "walls.mould.surface is 0.018 m thick",
+        ),
         ({"kind": "body", "shape": {"kind": "mesh", "file": "x.stl"}, "side": "inside"}, "only in 3d"),
     ],
 )
@@ -216,6 +250,94 @@ def test_a_surface_that_cannot_be(wall, part):
             if part in str(error):
                 return
     pytest.fail(f"nothing says {part!r}: {sentence(data)}")
+
+
+def places(value, path=()):
+    """Of all that stands in a part of a case."""
+    yield path
+    if isinstance(value, dict | list):
+        for key in value if isinstance(value, dict) else range(len(value)):
+            yield from places(value[key], (*path, key))
+
+
+JUNK = [
+    *(
+        None,
+        True,
+        0,
+        -1,
+        1e300,
+        -1e300,
+        1e-300,
+        "",
+        "x",
+        "body",
+        "slip",
+        [],
+        [0],
+        [0, 0],
+        [0, 0, 0],
+        [1e308] * 2,
+    ),
+    *(
+        [1e308] * 3,
+        {},
+        {"kind": "x"},
+        {"kind": "velocity"},
+        [[0, 0], [1, 1]],
+        [None] * 2,
+        ["top"],
+        ["z_max"] * 2,
+    ),
+    *({"kind": "rotation", "point": [0, 0], "rate": 1}, MOULD),
+]
+CRATE = {"kind": "box", "lower": [-0.3, -0.3, -0.3], "upper": [0.3, 0.3, 0.3]}
+TURN = {"kind": "rotation", "point": [0, 0, 0], "axis": [0, 0, 1], "rate": 2}
+TABLE = {"kind": "table", "times": [0, 1.0], "positions": [[0, 0], [0, 0.1]]}
+SCENES = {
+    "axisymmetric": {
+        "mould": MOULD,
+        "floor": FLOOR | {"surface": FLOOR["surface"] | {"motion": TABLE}},
+        "ball": {
+            "surface": {
+                "kind": "body",
+                "shape": BALL | {"centre": [0.3, 0.2], "radius": 0.05},
+                "side": "outside",
+            },
+            "contact": {"kind": "coulomb", "coefficient": 0.3},
+        },
+    },
+    "3d": {
+        "crate": {
+            "surface": {"kind": "body", "shape": CRATE, "side": "inside", "thickness": 0.06, "motion": TURN},
+            "contact": {"kind": "navier-slip", "slip_length": 0.1},
+        }
+    },
+}
+
+
+@pytest.mark.parametrize("space", SCENES)
+def test_whatever_stands_in_a_wall_is_read_or_told_of(space):
+    """Every sixth of all junk at all places: numbers beyond reason as well, and no warning of NumPy."""
+    walls = {"walls": SCENES[space]}
+    data = changed() | walls
+    if space == "3d":
+        ball = {"kind": "sphere", "centre": [0, 0, 0], "radius": 0.2}
+        grid = {"cell_size": 0.05, "domain": {axis: [-0.5, 0.5] for axis in "xyz"}}
+        data |= {"space": "3d", "grid": grid, "bodies": [data["bodies"][0] | {"shape": ball}]}
+    told = []
+    for path, junk in islice(product(places(walls), JUNK), len(JUNK), None, 6):
+        bad = copy.deepcopy(data)
+        here = bad
+        for key in path[:-1]:
+            here = here[key]
+        here[path[-1]] = copy.deepcopy(junk)
+        try:
+            make_particles(parse_case(bad))
+        except CaseError as error:
+            told.append(str(error))
+    assert len(told) > 100
+    assert not [said for said in told if re.search("\n|Input should|pydantic|union_tag", said)]
 
 
 # --- What is in the way -----------------------------------------------------------------------------------
@@ -253,6 +375,10 @@ def test_a_wall_that_comes_into_the_domain_is_allowed():
     plunger = {"kind": "plane", "point": [0, 0.6], "normal": [0, -1]}
     plunger["motion"] = {"kind": "velocity", "velocity": [0, -5.0]}
     parse_case(changed("walls.plunger", {"surface": plunger, "contact": "slip"}))
+    parse_case(changed("walls.plunger", {"surface": plunger | {"appears": 0.08}, "contact": "slip"}))
+    assert "walls.plunger.surface is outside" in sentence(
+        changed("walls.plunger", {"surface": plunger | {"vanishes": 0.04}, "contact": "slip"})
+    )
     plunger["motion"] = {"kind": "velocity", "velocity": [0, -1.0]}
     assert "walls.plunger.surface is outside" in sentence(
         changed("walls.plunger", {"surface": plunger, "contact": "slip"})
@@ -266,6 +392,11 @@ def test_a_case_without_walls_has_none():
     case = parse_case(changed("walls", ABSENT))
     assert case.walls == {}
     assert resolved(case)["walls"] == {}
+
+
+def test_a_case_with_walls_can_go_to_another_process():
+    case = parse_case(SLUMP)
+    assert pickle.loads(pickle.dumps(case)) == case
 
 
 def test_the_resolved_case_is_the_same_case():

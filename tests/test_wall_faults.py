@@ -167,6 +167,20 @@ def test_a_surface_without_a_distance_is_not_registered():
     check(Floor, "surface")
 
 
+@pytest.mark.parametrize(("base", "kind"), [(Floor, "surface"), (Free, "contact")])
+def test_a_parameter_that_stands_in_the_way_is_refused(base, kind):
+    class Kind(base):
+        kind: str = "x"
+
+    with pytest.raises(ValueError, match=f"it has a parameter 'kind', which a {kind} cannot have"):
+        check(Kind, kind)
+
+    class Name(base):
+        label: str = "x"
+
+    check(Name, kind)
+
+
 @pytest.mark.parametrize(
     ("attribute", "value", "reason"),
     [

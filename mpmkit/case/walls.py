@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,10 +13,12 @@ from .allowed import shown
 from .model import Case, Wall
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")
-TIMES = 65
-"""Times between the start and the end of a run at which a wall is looked for."""
+TIMES = 64
+"""Times in a run at which a wall near the domain is looked for."""
 POINTS = 1 << 14
 """Most points of the domain at which it is looked for."""
+MOST_SPEED = 1e6
+"""m/s; faster than anything that a wall is, and slow enough for what follows from it to be a number."""
 ROUNDING = 1e-9
 """Part of a cell by which a shell may be thinner than one."""
 
@@ -54,37 +55,53 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
     cell = case.grid.cell_size
     if surface.thickness < cell * (1 - ROUNDING):
         raise ValueError(
-            f"{where}.thickness is {surface.thickness:g} m, less than a cell of {cell:g} m; a wall with room "
-            "for material on both sides must be at least a cell thick"
+            f"{where} is {surface.thickness:g} m thick, less than a cell of {cell:g} m; a wall with room for "
+            "material on both sides must be at least a cell thick"
         )
-    if not any(_reaches(surface, case.domain_bounds, case, time) for time in _times(surface, case)):
+    fastest = surface.fastest(0.0, case.until)
+    if fastest > MOST_SPEED:
+        raise ValueError(f"{where} moves at {fastest:.3g} m/s; it must be at most {MOST_SPEED:g} m/s")
+    if not _comes_into_the_domain(surface, case):
         raise ValueError(
             f"{where} is outside the domain of the grid at all times of the run, so that no material can "
             "touch it; move it, or leave the wall out"
         )
 
 
-def _times(surface: audit.AuditedSurface, case: Case) -> Iterator[float]:
-    """Times at which a wall is there, or the time at which it appears."""
-    times = np.linspace(0.0, case.until, TIMES)
-    return (float(time) for time in times if surface.present(float(time)))
+def _comes_into_the_domain(surface: audit.AuditedSurface, case: Case) -> bool:
+    """Whether a wall may be in the domain at a time of the run at which it is there.
+
+    One that is far away is looked for again when it can have come as far, at the fastest that it will be.
+    """
+    time, soon = 0.0, case.until / TIMES
+    while time <= case.until:
+        gap, fastest = _gap(surface, case.domain_bounds, case, time), surface.fastest(time, case.until)
+        if gap <= 0 and surface.present(time):
+            return True
+        if gap > fastest * (case.until - time):
+            return False
+        time += max(soon, gap / fastest if fastest > 0 else 0.0)
+    return False
 
 
 def wall_between(case: Case, bounds: tuple[np.ndarray, np.ndarray]) -> bool:
     """Whether a wall that is there at the start may reach into a box between two corners, m."""
     with blaming_plugins([("surface", wall.surface) for wall in case.walls.values()]):
         surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
-        return any(surface.present(0.0) and _reaches(surface, bounds, case, 0.0) for surface in surfaces)
+        return any(surface.present(0.0) and _gap(surface, bounds, case, 0.0) <= 0 for surface in surfaces)
 
 
-def _reaches(
+def _gap(
     surface: audit.AuditedSurface, bounds: tuple[np.ndarray, np.ndarray], case: Case, time: float
-) -> bool:
-    """Whether a wall may be in a box: d changes no faster than the place does."""
+) -> float:
+    """How far, m, a wall is from a box at least; not above 0 where it may be in it.
+
+    d is known at points, and changes no faster than the place does.
+    """
     lower, upper = bounds
     extent = upper - lower
     spacing = max(case.grid.cell_size, float(np.prod(extent) / POINTS) ** (1 / len(extent)))
     count = np.maximum(1, np.ceil(extent / spacing)).astype(int)
     index = np.indices(count).reshape(len(count), -1).T
     distance, _ = surface.distance(lower + (index + 0.5) * extent / count, time)
-    return bool(distance.min() <= math.hypot(*(extent / count)) / 2)
+    return float(distance.min()) - math.hypot(*(extent / count)) / 2

@@ -17,6 +17,10 @@ Hull = tuple[np.ndarray, float]
 """Points, m, (m, dim), and how far, m, a body reaches beyond their convex hull."""
 
 
+TOO_FAST = 1e9
+"""m/s, of a table: the square of a velocity must be a number."""
+
+
 class Motion(BaseModel):
     """A rigid motion, x = point + Q(t) (X - point) + u(t); X is where the point of the body is at first.
 
@@ -25,8 +29,8 @@ class Motion(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
-    uniform: ClassVar[bool] = True
-    """Whether all points have the same velocity."""
+    turns: ClassVar[bool] = False
+    """Whether points of the body have different velocities."""
 
     @abstractmethod
     def vectors(self) -> dict[str, list[float]]:
@@ -130,6 +134,9 @@ class Table(Motion):
                 raise ValueError(
                     f"times has {after:g} s after {before:g} s; each must be above the one before"
                 )
+        for (t0, t1), (x0, x1) in zip(pairwise(self.times), pairwise(self.positions), strict=True):
+            if max(abs(b - a) for a, b in zip(x0, x1, strict=True)) > TOO_FAST * (t1 - t0):
+                raise ValueError(f"positions go from {x0} to {x1} in {t1 - t0:g} s, which is too fast")
         return self
 
     def vectors(self) -> dict[str, list[float]]:
@@ -184,7 +191,8 @@ class Rotation(Spell):
     positive rate turns x towards z.
     """
 
-    uniform = False
+    turns = True
+
     kind: Literal["rotation"]
     point: list[float] = quantity("m", "a point of the axis", min_length=2, max_length=3)
     axis: list[float] | None = Field(
@@ -226,7 +234,8 @@ class Rotation(Spell):
         """K with K r = axis × r, (dim, dim), for the axis of length 1."""
         if self.axis is None:
             return np.array([[0.0, -1.0], [1.0, 0.0]])
-        x, y, z = np.array(self.axis) / np.linalg.norm(self.axis)
+        axis = np.array(self.axis) / np.abs(self.axis).max()  # whose square may be no number
+        x, y, z = axis / np.linalg.norm(axis)
         return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
     def _turn(self, t: float) -> np.ndarray:

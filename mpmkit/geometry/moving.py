@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from .distance import Solid
-from .motion import Motion
+from .motion import Hull, Motion
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,11 @@ class MovingSolid:
     vanishes: float | None = None
     thickness: float = math.inf
 
+    @cached_property
+    def _hull(self) -> Hull:
+        """That of the solid; of one without an end, which cannot turn, a place."""
+        return self.solid.hull() or (np.zeros((1, 1)), 0.0)
+
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
         """d, m, (k,), and n, (k, dim), at points in the scene, m, (k, dim), at a time, s."""
         if self.motion is None:
@@ -39,7 +45,7 @@ class MovingSolid:
         """m/s, (k, dim), of the wall at the points of its surface nearest to ``x``."""
         if self.motion is None:
             return np.zeros(x.shape)
-        if self.motion.uniform:
+        if not self.motion.turns:
             return self.motion.velocities(x, t)
         distance, normal = self.distance(x, t)
         return self.motion.velocities(x - distance[:, None] * normal, t)
@@ -48,7 +54,7 @@ class MovingSolid:
         """Upper bound, m/s, of the velocity between two times, s."""
         if self.motion is None:
             return 0.0
-        return self.motion.fastest(t0, t1, self.solid.hull() or (np.empty((0, 0)), math.inf))
+        return self.motion.fastest(t0, t1, self._hull)
 
     def present(self, t: float) -> bool:
         """Whether it is there at a time, s."""

@@ -16,6 +16,7 @@ from ..contracts.elastoviscoplastic import ElastoviscoplasticLaw
 from ..errors import CaseError, PluginStop
 from ..registry import installed
 from ..rheology.refit import with_law
+from .symmetric_walls import are_turned
 from .symmetry import axis_of_revolution, planes_of_symmetry
 
 CELLS_HIGH = (30, 15)
@@ -24,6 +25,9 @@ FACTOR, MACH = 10.0, 0.1
 """Sound speeds of the shipped study: a multiple of √(2 g h), and a Mach number that they keep."""
 COARSER = 1.25
 """How much wider the cells of a coarser model must be to be worth a line."""
+
+VECTORS = ("base", "centre", "point", "normal", "velocity", "amplitude", "positions")
+"""Fields of surfaces, of their shapes and motions, that have a component for each axis."""
 
 Changes = dict[str, Any]
 
@@ -79,12 +83,15 @@ def _models(case: Case, kind: Callable[[Case], Iterator[tuple[str, str, Changes]
         for path, value in changes.items():
             assign(data, path, value)
         try:
-            yield Cheaper(name, why, changes, parse_case(data))
+            model = parse_case(data)
         except (
             CaseError,
             PluginStop,
         ):  # what the case asks for beside it does not go with it, such as an output along y
             continue
+        axis = axis_of_revolution(case) if model.space != case.space else None
+        if axis is None or are_turned(case, model, axis):
+            yield Cheaper(name, why, changes, model)
 
 
 def _spaces(case: Case) -> Iterator[tuple[str, str, Changes]]:
@@ -112,6 +119,8 @@ def _spaces(case: Case) -> Iterator[tuple[str, str, Changes]]:
         turned["gravity"] = [0.0, case.gravity[-1]]
     for index, body in enumerate(case.bodies):
         turned |= {f"bodies.{index}.{path}": value for path, value in _turned(body).items()}
+    for name, wall in case.model_dump(mode="json", exclude_unset=True).get("walls", {}).items():
+        turned[f"walls.{name}.surface"] = _half_plane(wall["surface"])
     yield "axisymmetric", "all bodies turn about one vertical axis", turned
 
 
@@ -129,6 +138,20 @@ def _turned(body: Any) -> Changes:
     if isinstance(body.velocity, list):
         changes["velocity"] = [0.0, body.velocity[-1]]
     return changes
+
+
+def _half_plane(surface: Any, vector: bool = False) -> Any:
+    """A surface as the half plane has it: of its vectors, in fields of these names, the part along z is left.
+
+    ``are_turned`` sees whether it is then the same wall.
+    """
+    if isinstance(surface, dict):
+        return {key: _half_plane(part, key in VECTORS) for key, part in surface.items()}
+    if not isinstance(surface, list) or not vector:
+        return surface
+    if any(isinstance(part, list) for part in surface):
+        return [_half_plane(part, vector) for part in surface]
+    return [0.0, surface[-1]]
 
 
 def _cells(case: Case) -> Iterator[tuple[str, str, Changes]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..case.model import Case
+from .symmetric_walls import are_mirrored
 
 SIDES = ("x_min", "x_max", "y_min", "y_max")
 
@@ -35,7 +36,7 @@ def planes_of_symmetry(case: Case) -> tuple[float, float] | None:
         (lower, upper), apart = case.grid.domain[axis], case.grid.cell_size
         if not lower < place < upper or (low != "open" and abs(lower + upper - 2 * place) > 1e-9 * apart):
             return None
-    return middle
+    return middle if are_mirrored(case, middle) else None
 
 
 def _common_middle(case: Case) -> tuple[float, float] | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...kernels.sections import section_distance
 from .solid import Found, Solid
 
 Loop = list[tuple[float, float]]
@@ -16,8 +17,7 @@ Loop = list[tuple[float, float]]
 class Section(Solid):
     """A plane region with straight edges; ``start`` and ``end``, m, (edges, 2), with the region on the left.
 
-    The nearest edge decides. Where its foot is between its ends, φ is the distance of its line, signed by the
-    side and exact to rounding; else it is that of the corner, signed by whether the point is in the region.
+    φ is exact to rounding, see ``section_distance``.
     """
 
     start: np.ndarray
@@ -36,41 +36,7 @@ class Section(Solid):
         return cls(np.concatenate(starts), np.concatenate(ends))
 
     def distance(self, x: np.ndarray) -> Found:
-        k = len(x)
-        nearest, distance = np.full(k, np.inf), np.empty(k)
-        gradient, at_corner = np.empty((k, 2)), np.zeros(k, dtype=bool)
-        for a, b in zip(self.start, self.end, strict=True):
-            length = np.linalg.norm(b - a)
-            along = (b - a) / length
-            normal = np.array([along[1], -along[0]])
-            offset = x - a
-            place = offset @ along
-            foot = np.clip(place, 0.0, length)
-            to_foot = offset - foot[:, None] * along
-            square = (to_foot * to_foot).sum(axis=1)
-            better = square < nearest
-            nearest[better] = square[better]
-            beyond = ((foot != place) & (square > 0))[better]
-            at_corner[better] = beyond
-            # Of a corner the vector towards the point, of an edge its normal.
-            gradient[better] = np.where(beyond[:, None], to_foot[better], normal)
-            distance[better] = (offset @ normal)[better]
-        corner = np.flatnonzero(at_corner)
-        away = np.sqrt(nearest[corner])
-        sign = np.where(self.contains(x[corner]), -1.0, 1.0)
-        distance[corner] = sign * away
-        gradient[corner] *= (sign / away)[:, None]
-        return distance, gradient
-
-    def contains(self, x: np.ndarray) -> np.ndarray:
-        """Whether points are in the region, (k,): a ray along the first axis then crosses edges an odd number
-        of times."""
-        inside = np.zeros(len(x), dtype=bool)
-        for a, b in zip(self.start, self.end, strict=True):
-            if a[1] != b[1]:
-                spans = (a[1] > x[:, 1]) != (b[1] > x[:, 1])
-                inside ^= spans & (x[:, 0] < a[0] + (x[:, 1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-        return inside
+        return section_distance(np.ascontiguousarray(x, dtype=float), self.start, self.end)
 
     def hull(self) -> tuple[np.ndarray, float]:
         return self.start, 0.0

@@ -26,6 +26,11 @@ class Solid(ABC):
         """Points, m, (m, dim), and a radius, m: no point of its surface is farther from the convex hull of
         the points; None if the surface has no end."""
 
+    def extent(self) -> float:
+        """Its least extent along an axis, m; infinite where it has no end."""
+        found = self.hull()
+        return np.inf if found is None else float(np.ptp(found[0], axis=0).min()) + 2 * found[1]
+
 
 @dataclass(frozen=True)
 class HalfSpace(Solid):

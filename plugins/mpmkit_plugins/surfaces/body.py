@@ -2,12 +2,13 @@
 
 from typing import Literal
 
+import numpy as np
 from pydantic import Field
 
 from mpmkit.contracts import Space, Surface, hookimpl, quantity
 from mpmkit.geometry import AnyShape, Inverted, MovingSolid
 
-from .rigid import RigidSurface
+from .rigid import LARGEST, RigidSurface
 
 
 class BodySurface(RigidSurface):
@@ -39,6 +40,8 @@ class BodySurface(RigidSurface):
     )
 
     def problem(self, space: Space) -> str | None:
+        if reason := super().problem(space):
+            return reason
         try:
             self.shape.check(space)
         except ValueError as error:
@@ -52,7 +55,11 @@ class BodySurface(RigidSurface):
                 return f"open is {self.open}, but only a shell has ends that can be open: give its thickness"
             if reason := self._cannot_open(space):
                 return reason
-        return super().problem(space)
+        if self.thickness is not None:
+            hull = self.shape.shell(space, self.thickness, self.open).hull()
+            if hull is not None and np.abs(hull[0]).max() > LARGEST:
+                return f"the {self.shape.kind} is so flat that a shell of it has no end"
+        return None
 
     def _cannot_open(self, space: Space) -> str | None:
         ends, named = self.shape.ends(space), self.open or []
@@ -70,7 +77,8 @@ class BodySurface(RigidSurface):
 
     def placed(self, space: Space) -> MovingSolid:
         if self.side == "outside":
-            return self.moving(self.shape.solid(space))
+            obstacle = self.shape.solid(space)
+            return self.moving(obstacle, obstacle.extent())
         if self.thickness is None:
             return self.moving(Inverted(self.shape.solid(space)))
         return self.moving(self.shape.shell(space, self.thickness, self.open), self.thickness)

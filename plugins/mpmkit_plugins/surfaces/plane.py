@@ -40,7 +40,8 @@ class Plane(RigidSurface):
         return super().problem(space)
 
     def placed(self, space: Space) -> MovingSolid:
-        normal = np.array(self.normal) / np.linalg.norm(self.normal)
+        normal = np.array(self.normal) / np.abs(self.normal).max()  # whose square may be no number
+        normal /= np.linalg.norm(normal)
         return self.moving(HalfSpace(np.array(self.point), normal))
 
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import Any
 
 from pydantic import Field, model_validator
 
 from mpmkit.contracts import Space, Surface, quantity
 from mpmkit.geometry import AnyMotion, MovingSolid, Solid
+
+LARGEST = 1e9
+"""Size of a number of a surface, in SI units: its square must be a number, and differ from that of a cell."""
 
 
 class RigidSurface(Surface):
@@ -29,9 +34,21 @@ class RigidSurface(Surface):
         return self
 
     def problem(self, space: Space) -> str | None:
+        for field, number in _numbers(self.model_dump(mode="json")):
+            if abs(number) > LARGEST:
+                return f"{field} is {number:g}; it must be between {-LARGEST:g} and {LARGEST:g}"
         found = None if self.motion is None else self.motion.problem(space)
         return None if found is None else f"the motion's {found}"
 
     def moving(self, solid: Solid, thickness: float = math.inf) -> MovingSolid:
         """The solid in its motion, for the time in which it is there."""
         return MovingSolid(solid, self.motion, self.appears, self.vanishes, thickness)
+
+
+def _numbers(value: Any, field: str = "") -> Iterator[tuple[str, float]]:
+    """All numbers of a part of a surface, with their places in it."""
+    if isinstance(value, dict | list):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _numbers(part, f"{field}.{key}" if field else str(key))
+    elif isinstance(value, int | float):
+        yield field, value
