@@ -22,6 +22,7 @@ from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .touch import Touch
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
@@ -72,6 +73,7 @@ class SceneOperations:
         self._radial_tables = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
         self._axial_tables = self.base[:, 1:], self.weight[:, 1:], self.gradient[:, 1:]
         self.averager = Averager(self.particles, self.window, self.sorting, self.base, self.weight)
+        self.touch = Touch(self.grid, self.particles, self.radial, support)
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
@@ -111,6 +113,7 @@ class SceneOperations:
             self._auditing = len(self.particles) < audit.FEW or self._begun % audit.LOOKS == 0
             self._begun += 1
             self._evaluate_shapes()
+            self.touch.mark(self.window, self.sorting, self.base, self.weight, begins=self._begun == 1)
         return lost
 
     def _sort(self) -> int | None:
