@@ -16,7 +16,7 @@ from .model import Body, Case, Material
 from .plausibility import implausible
 
 CLOSED = ("slip", "stick", "symmetry")
-PULLING = ("slip", "symmetry")
+PULLING = ("symmetry",)
 """Faces that hold the normal velocity of what is at them, whether it presses on them or leaves."""
 MOST = 5
 """Sentences of one kind: of a hundred drops, five pairs say all."""
@@ -97,7 +97,7 @@ def _falls_out(case: Case) -> Iterator[str]:
 
 
 def _hangs(case: Case) -> Iterator[str]:
-    """Bodies that leave a slip or symmetry face by gravity or by their own motion, and are held there."""
+    """Bodies that leave a symmetry face by gravity or by their own motion, and are held there."""
     g = case.gravity_vector
     for axis in range(case.space_.dim):
         for upwards in (False, True):
@@ -115,7 +115,7 @@ def _hangs(case: Case) -> Iterator[str]:
                     why = "gravity draws" if falls else "its velocity takes"
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
-                        f'"{face}" face does not let go of what is at it; one of kind "friction" does'
+                        f'"{face}" face does not let go of what is at it; "slip" does'
                     )
 
 

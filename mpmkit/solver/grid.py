@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case.faces import Friction
+from ..case.faces import Friction, Stick
 from ..case.model import Case
 from ..kernels import nodes as node_kernels
 from ..kernels.scatter import CONTACT, NODE, PAIR
@@ -52,6 +52,8 @@ class Grid:
             if isinstance(face, Friction):
                 faces.flat[index] = node_kernels.FRICTION
                 friction.flat[index] = face.coefficient
+            elif isinstance(face, Stick):
+                faces.flat[index] = node_kernels.RELEASING_STICK if face.releases else node_kernels.STICK
             else:
                 faces.flat[index] = FACE_CODES[face]
         if space.radial:
