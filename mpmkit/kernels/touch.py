@@ -18,6 +18,8 @@ REACH = 0.02
 """Gap, in cells, between a particle's box and a wall up to which they touch."""
 FULL = 0.9
 """Crowding from which a node of a wall is touched, however far the boxes around it are from the wall."""
+NOWHERE = -(1 << 30)
+"""Number of the nodes on a face that is no wall: no node has it."""
 PUSHES = TOUCHED - PUSHED
 """The bits of all axes."""
 TOUCHES = PUSHES * TOUCHED
@@ -30,110 +32,106 @@ def mark(dim: int, support: int):
     ``mark(nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position,
     velocity, half_size, volume, room, cell_size, begins)`` marks a node for an axis if the box of a particle with
     weight on the node reaches the wall across that axis, or if the node is full: Σ V_p N_np > ``FULL`` V_n.
-    Where material has not reached the wall, it has not been pushed either. When a run ``begins``, what rests on
-    a wall is held to be pushed by it.
+    Where material has not reached the wall, it is not pushed either. When a run ``begins``, what rests on a wall
+    is taken to be pushed by it.
 
-    ``walls[a, side]`` is the number of the nodes on a face that is a wall, and one that no node has where it is
-    none. ``room`` is V_n of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes,
-    2)``; it must be zero, and is zero afterwards.
+    ``walls[a, side]`` is the number of the nodes on a face, ``NOWHERE`` if that is no wall. ``room`` is V_n of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes,
+    2)``, for Σ V_p N_np and for bits; it must be zero, and is zero afterwards.
     """
+    planes = support if dim == 3 else 1
+
+    @inline()
+    def _reach(
+        sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins, p, a,
+        wall, k,
+    ):  # fmt: skip
+        """The share of a particle in the nodes of the wall that is k nodes from its first along axis a."""
+        V = volume[p] * weight[p, a, k]
+        if V == 0.0:
+            return
+        half = min(half_size[p, a], 0.5 * cell_size)  # as much of the box as the weights know of
+        bits = 0
+        if abs(position[p, a] - wall * cell_size) - half <= REACH * cell_size:
+            bits = TOUCHED << a
+            if begins and velocity[p, a] == 0.0:
+                bits |= PUSHED << a
+        b, c = (a + 1) % dim, (a + 2) % dim  # the axes along the wall; in the plane only the first
+        first = (wall - lower[a]) * strides[a] + (base[p, b] - lower[b]) * strides[b]
+        if dim == 3:
+            first += (base[p, c] - lower[c]) * strides[c]
+        for i in range(support):
+            i_counts = b > a or not _on(walls, b, base[p, b] + i)
+            for j in range(planes):
+                w, at, counts = V * weight[p, b, i], first + i * strides[b], i_counts
+                if dim == 3:
+                    w *= weight[p, c, j]
+                    at += j * strides[c]
+                    counts &= c > a or not _on(walls, c, base[p, c] + j)
+                if counts:  # what lies on two walls is met twice
+                    sums[at, 0] += w
+                if bits and w != 0.0 and int(sums[at, 1]) & bits != bits:
+                    sums[at, 1] = int(sums[at, 1]) | bits
 
     @kernel()
     def mark(
         nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position, velocity,
         half_size, volume, room, cell_size, begins,
     ):  # fmt: skip
-        _forget(nodes, faces, mirrors, plane_first)
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
                 for g in range(tasks.shape[0]):
-                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
-                        near = False
-                        for a in range(dim):
-                            first = base[p, a]
-                            near |= (first <= walls[a, 0]) & (walls[a, 0] < first + support)
-                            near |= (first <= walls[a, 1]) & (walls[a, 1] < first + support)
-                        if near:
-                            _reach(
-                                nodes, sums, strides, lower, walls, base, weight, position, velocity, half_size,
-                                volume, cell_size, begins, p, dim, support,
-                            )  # fmt: skip
+                    begin, end = tasks[g, colour, task], tasks[g, colour, task + 1]
+                    for a in range(dim):
+                        for side in range(2):
+                            wall = walls[a, side]
+                            if wall != NOWHERE:
+                                for p in range(begin, end):
+                                    k = wall - base[p, a]
+                                    if 0 <= k < support:
+                                        _reach(
+                                            sums, strides, lower, walls, base, weight, position, velocity,
+                                            half_size, volume, cell_size, begins, p, a, wall, k,
+                                        )  # fmt: skip
         _settle(nodes, sums, faces, mirrors, plane_first, room)
 
     return mark
 
 
 @inline()
-def _reach(
-    nodes, sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins,
-    p, dim, support,
-):  # fmt: skip
-    """The share of a particle in the nodes of the walls that it has weight on."""
-    reached = resting = 0  # bits of the axes across which its box reaches a wall, and of those where it rests there
-    for a in range(dim):
-        x, half = position[p, a], min(half_size[p, a], 0.5 * cell_size)
-        for side in range(2):
-            gap = abs(x - walls[a, side] * cell_size) - half
-            if gap <= REACH * cell_size:
-                reached |= 1 << 2 * a + side
-                if begins and velocity[p, a] == 0.0:
-                    resting |= 1 << 2 * a + side
-    for n in range(support**dim):
-        at, rest, w, bits, on_wall = 0, n, 1.0, 0, False
-        for d in range(dim):
-            a = dim - 1 - d
-            k = rest % support
-            rest //= support
-            number = base[p, a] + k
-            w *= weight[p, a, k]
-            at += (number - lower[a]) * strides[a]
-            for side in range(2):
-                if number == walls[a, side]:
-                    on_wall = True
-                    if reached >> 2 * a + side & 1:
-                        bits |= TOUCHED << a
-                    if resting >> 2 * a + side & 1:
-                        bits |= PUSHED << a
-        if on_wall and w != 0.0:
-            sums[at, 0] += volume[p] * w
-            nodes[at, CONTACT] = int(nodes[at, CONTACT]) | bits
-
-
-@function()
-def _forget(nodes, faces, mirrors, plane_first):
-    """No node is touched."""
-    for a in range(len(faces)):
-        for side in range(2):
-            if is_wall(faces[a, side]):
-                for k in range(plane_first[PLANES * a + side], plane_first[PLANES * a + side + 1]):
-                    wall = mirrors[k, 2]
-                    nodes[wall, CONTACT] = int(nodes[wall, CONTACT]) & PUSHES
+def _on(walls, a, number):
+    """Whether nodes of that number along an axis lie on one of its walls."""
+    return number == walls[a, 0] or number == walls[a, 1]
 
 
 @function()
 def _settle(nodes, sums, faces, mirrors, plane_first, room):
-    """Full nodes are touched; a ghost and its image are touched alike, and push only where they are touched."""
+    """Full nodes are touched, and a ghost and its image alike; where nothing touches, nothing is pushed."""
     dim = len(faces)
     fold(sums, faces, mirrors, plane_first, 0, 1, False)
     for a in range(dim):
         for k in range(plane_first[PLANES * a], plane_first[PLANES * (a + 1)]):
             ghost, image = mirrors[k, 0], mirrors[k, 1]
-            nodes[image, CONTACT] = int(nodes[image, CONTACT]) | int(nodes[ghost, CONTACT]) & TOUCHES
+            if sums[ghost, 1] != 0.0:
+                sums[image, 1] = int(sums[image, 1]) | int(sums[ghost, 1])
     for a in range(dim):
         for side in range(2):
             if is_wall(faces[a, side]):
                 for k in range(plane_first[PLANES * a + side], plane_first[PLANES * a + side + 1]):
                     wall = mirrors[k, 2]
                     if sums[wall, 0] > FULL * room[k]:
-                        nodes[wall, CONTACT] = int(nodes[wall, CONTACT]) | TOUCHED << a
+                        sums[wall, 1] = int(sums[wall, 1]) | TOUCHED << a
     for step in range(dim):
         a = dim - 1 - step
         for k in range(plane_first[PLANES * a], plane_first[PLANES * (a + 1)]):
             ghost, image = mirrors[k, 0], mirrors[k, 1]
-            contacts = int(nodes[ghost, CONTACT]) & PUSHES | int(nodes[image, CONTACT]) & TOUCHES
-            nodes[ghost, CONTACT] = contacts
+            sums[ghost, 1] = sums[image, 1]
+    for plane in range(PLANES * dim):
+        if is_wall(faces[plane // PLANES, min(plane % PLANES, 1)]):
+            for k in range(plane_first[plane], plane_first[plane + 1]):
+                wall = mirrors[k, 2]
+                found, pushed = int(sums[wall, 1]), int(nodes[wall, CONTACT]) & PUSHES
+                touched = found & TOUCHES
+                nodes[wall, CONTACT] = touched | (pushed | found) & touched // TOUCHED
     for k in range(len(mirrors)):
-        wall = mirrors[k, 2]
-        contacts = int(nodes[wall, CONTACT])
-        nodes[wall, CONTACT] = contacts & (TOUCHES | contacts // TOUCHED)
-        sums[wall, 0] = 0.0
+        for node in mirrors[k]:
+            sums[node, 0] = sums[node, 1] = 0.0

@@ -17,8 +17,6 @@ from .node_volumes import node_volumes
 from .particles import Particles
 from .sorting import Sorting
 
-NOWHERE = -(1 << 30)
-"""Number of the nodes on a face that is no wall: no node has it."""
 ROOM_ON_AXIS = 1 / 6
 """Room of a node on the axis, in Δx² turns, for boxes that tile it."""
 
@@ -29,7 +27,7 @@ class Touch:
     def __init__(self, grid: Grid, particles: Particles, radial: bool, support: int) -> None:
         self._particles, self._radial = particles, radial
         self._walled, self._cell_size = grid.walled, grid.cell_size
-        self._walls = np.where(grid.walls, np.stack([np.zeros_like(grid.cells), grid.cells], axis=1), NOWHERE)
+        self._walls = np.where(grid.walls, np.stack([np.zeros_like(grid.cells), grid.cells], axis=1), touch.NOWHERE)
         self._mark = touch.mark(grid.dim, support)
         self._sorts, self._room = -1, np.zeros(0)
 
