@@ -86,6 +86,7 @@ OBJECTS = [
     ({"type": "friction", "mu": 0.4}, FRICTION),
     ({"kind": "slip"}, '"slip"'),
     ({"kind": "no-slip"}, '"stick"'),
+    ({"kind": "stick"}, '"stick"'),
     ({"slip": True}, '"slip"'),
 ]
 

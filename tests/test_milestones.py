@@ -220,6 +220,10 @@ class TestWhatIsSaid:
         [
             ({"z_min": "stick"}, "stick, so that the material does not slide on it"),
             ({"z_min": {"kind": "friction", "coefficient": 0.4}}, "friction, with the coefficient 0.4"),
+            (
+                {"z_min": {"kind": "stick", "releases": True}},
+                "stick, so that the material does not slide on it, and lets go where it would have to pull",
+            ),
             ({}, None),
         ],
     )

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mpmkit.kernels import nodes
-from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, STICK
-from mpmkit.kernels.scatter import CONTACT, NODE
+from mpmkit.kernels.nodes import FRICTION, MIRROR, OPEN, PERIODIC, RELEASING_STICK, STICK
+from mpmkit.kernels.scatter import CONTACT, NODE, PUSHED, TOUCHED
 
 pytestmark = pytest.mark.usefixtures("each_number_of_threads")
 
@@ -19,7 +19,9 @@ def block(dim, seed=6):
     walls = np.array([[1, n - 2] for n in shape[:dim]], dtype=np.int64)
     records = rng.normal(size=(int(np.prod(shape)), NODE))
     records[:, 0] = rng.uniform(1, 2, len(records))
-    records[:, CONTACT] = rng.integers(0, 2**dim, len(records))
+    records[:, CONTACT] = rng.integers(0, 2**dim, len(records)) + TOUCHED * rng.integers(
+        0, 2**dim, len(records)
+    )
     return records, shape, walls
 
 
@@ -57,7 +59,7 @@ def parity(face, dim, axis, vectors):
     A mirror turns the normal components of both vectors round, a stick wall all of them.
     """
     sign = np.ones(NODE)
-    if vectors and face == STICK:
+    if vectors and face in (STICK, RELEASING_STICK):
         sign[1 : 1 + 2 * dim] = -1.0
     elif vectors and face != PERIODIC:
         sign[[1 + axis, 1 + dim + axis]] = -1.0
@@ -68,6 +70,7 @@ FACES_2D = [
     [[OPEN, OPEN], [OPEN, OPEN]],
     [[MIRROR, OPEN], [OPEN, MIRROR]],
     [[MIRROR, MIRROR], [FRICTION, STICK]],
+    [[RELEASING_STICK, STICK], [FRICTION, RELEASING_STICK]],
     [[PERIODIC, PERIODIC], [MIRROR, OPEN]],
     [[PERIODIC, PERIODIC], [PERIODIC, PERIODIC]],
 ]
@@ -91,11 +94,20 @@ def images(faces, axis):
     return [(face, ghost, image) for face, ghost, image in both if face != OPEN]
 
 
+BIT = {STICK: TOUCHED, FRICTION: PUSHED, RELEASING_STICK: PUSHED}
+"""What a node has where a wall acts; other faces act everywhere."""
+
+
+def acts(face, contacts, axis):
+    """Whether a face across an axis acts at nodes, from what they know of contact."""
+    everywhere = face not in BIT
+    return (contacts.astype(int) & BIT.get(face, 0) << axis > 0) | everywhere
+
+
 def reflecting(records, face, axis, ghost, image, vectors):
-    """Columns of nodes behind which a face reflects: of a Coulomb wall, those that touch it."""
-    contacts = plane(records, axis, (ghost + image) // 2)[..., CONTACT].astype(int)
-    everywhere = face != FRICTION or not vectors
-    return ((contacts & 1 << axis) > 0)[..., None] | everywhere
+    """Columns of nodes behind which a face reflects vectors: of a wall, those where it acts."""
+    contacts = plane(records, axis, (ghost + image) // 2)[..., CONTACT]
+    return acts(face, contacts, axis)[..., None] | (not vectors)
 
 
 @each_set_of_faces
@@ -139,11 +151,15 @@ def test_fill(faces, vectors):
 
 @each_set_of_faces
 def test_fill_is_the_transpose_of_fold(faces):
-    """⟨fold a, b⟩ = ⟨a, fill b⟩ for all a and b whose ghosts are what ``fill`` makes of them."""
+    """⟨fold a, b⟩ = ⟨a, fill b⟩ for all a and b whose ghosts are what ``fill`` makes of them.
+
+    And where walls act at a ghost in their plane as they do at its image, as ``kernels.touch`` marks them.
+    """
     faces = np.array(faces)
     dim = len(faces)
     a, shape, _ = block(dim, seed=7)
     b, *_ = block(dim, seed=8)
+    nodes.fill(a, faces, *mirrors(shape, faces), CONTACT, NODE, False)
     b[:, CONTACT] = a[:, CONTACT]
     last = 1 + 2 * dim
     filled = b.copy()
@@ -183,7 +199,7 @@ def test_averages_at_nodes(faces):
 
 
 def constrained(velocity, change, contact, faces, friction, walls, solved):
-    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` has a bit an axis.
+    """Reference of the conditions on the faces, on (nx, ny, nz, dim); ``contact`` as in the records.
 
     All walls at once: what each pushes is the velocity towards it before any of them acts.
     """
@@ -191,17 +207,17 @@ def constrained(velocity, change, contact, faces, friction, walls, solved):
     start, grips = velocity.copy(), []
     for axis, side in np.ndindex(dim, 2):
         code, k, inward = faces[axis, side], int(walls[axis, side]), 1 - 2 * side
-        v = plane(velocity, axis, k)
-        if code == MIRROR:
-            v[..., axis] = 0.0
-        elif code == STICK:
-            v[...] = 0.0
-        elif code == FRICTION and not solved:
-            v[..., axis][plane(contact, axis, k) >> axis & 1 > 0] = 0.0
-        elif code == FRICTION:
-            push = np.maximum(-inward * plane(start, axis, k)[..., axis], 0.0)
-            v[..., axis][push > 0] = 0.0
-            grips.append((axis, k, friction[axis, side] * push))
+        v, known = plane(velocity, axis, k), plane(contact, axis, k)
+        held = acts(code, known, axis)
+        if code in (FRICTION, RELEASING_STICK) and solved:
+            push = np.maximum(-inward * plane(start, axis, k)[..., axis], 0.0) * acts(STICK, known, axis)
+            held = push > 0
+            coefficient = friction[axis, side] if code == FRICTION else 1e300
+            grips.append((axis, k, coefficient * push))
+        if code in (STICK, RELEASING_STICK):
+            v[held] = 0.0
+        elif code in (MIRROR, FRICTION):
+            v[..., axis][held] = 0.0
     for axis, k, grip in grips:
         v = plane(velocity, axis, k)
         slip = np.linalg.norm(np.delete(v, axis, axis=-1), axis=-1)
@@ -209,19 +225,14 @@ def constrained(velocity, change, contact, faces, friction, walls, solved):
         v *= np.where(np.arange(dim) == axis, 1.0, keep)
     if solved:
         change += velocity - start
-        for axis, side in np.ndindex(dim, 2):
-            held = plane(change, axis, int(walls[axis, side]))
-            if faces[axis, side] == MIRROR:
-                held[..., axis] = 0.0
-            elif faces[axis, side] == STICK:
-                held[...] = 0.0
 
 
 @pytest.mark.parametrize(
     "faces",
     [f for f in FACES_2D + FACES_3D if not any(PERIODIC in pair for pair in f)]
     + [[[FRICTION, FRICTION], [FRICTION, FRICTION], [FRICTION, FRICTION]], [[STICK, STICK], [STICK, MIRROR]]]
-    + [[[FRICTION, FRICTION], [MIRROR, STICK], [FRICTION, MIRROR]]],
+    + [[[FRICTION, FRICTION], [MIRROR, STICK], [FRICTION, MIRROR]]]
+    + [[[RELEASING_STICK, FRICTION], [STICK, RELEASING_STICK], [FRICTION, MIRROR]]],
     ids=str,
 )
 def test_momentum_equation_and_conditions_on_the_faces(faces):
@@ -269,6 +280,7 @@ def test_friction_never_turns_the_slip_round():
     slip, into = np.array([1.0, 0.2, 1.0]), np.array([-1.0, -1.0, +1.0])
     for i in range(3):
         records[3 * i, 1:3] = slip[i], into[i]
+        records[3 * i, CONTACT] = TOUCHED << 1
     behind = np.array([[k + 1, k + 2, k] for k in (0, 3, 6)])  # ghosts and images that nobody asks for
     plane_first = np.array([0, 0, 0, 0, 3, 3, 3])
     nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, plane_first, friction, 1.0)
@@ -276,4 +288,5 @@ def test_friction_never_turns_the_slip_round():
     np.testing.assert_allclose(records[[0, 3, 6], 2], [0.0, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 3], [-0.5, -0.2, 0.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 4], [1.0, 1.0, 0.0], atol=1e-15)
-    assert (records[[0, 3, 6], CONTACT] == [2, 2, 0]).all()  # remembered as the bit of its axis
+    pushed = records[[0, 3, 6], CONTACT].astype(int) - (TOUCHED << 1)
+    assert (pushed == [PUSHED << 1, PUSHED << 1, 0]).all()  # remembered as the bit of its axis

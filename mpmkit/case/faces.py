@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from ..contracts import quantity
 from .allowed import one_of, shown
@@ -20,13 +20,25 @@ class Friction(Model):
     coefficient: float = quantity("1", "Coulomb friction coefficient", ge=0)
 
 
+class Stick(Model):
+    """A wall to which material sticks, and which ``releases`` it or not where it would have to pull."""
+
+    kind: Literal["stick"]
+    releases: bool = Field(
+        description='whether the wall lets go of material that it would have to pull; the plain name "stick" '
+        "does not"
+    )
+
+
 FaceName = Literal["slip", "stick", "periodic", "open", "symmetry"]
 NAMES = list(get_args(FaceName))
 
 
 def _written_as_it_must_be(value: Any) -> Any:
-    """The value itself; an object that is no friction wall is refused with what to write instead."""
+    """The value itself; an object that is no wall with parameters is refused with what to write instead."""
     if not isinstance(value, dict) or value.get("kind") == "friction":
+        return value
+    if value.get("kind") == "stick" and len(value) > 1:
         return value
     kind = value.get("kind", value.get("type", value.get("name")))
     if isinstance(kind, str):
@@ -56,11 +68,16 @@ def _friction(value: Any) -> str:
 
 def _face_tag(value: Any) -> str:
     # No tag is the name of a key: in the path of an error the two must not be taken for each other.
-    return "by-name" if isinstance(value, str) else "by-object"
+    if isinstance(value, str):
+        return "by-name"
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return "by-stick" if kind == "stick" else "by-object"
 
 
 Face = Annotated[
-    Annotated[FaceName, Tag("by-name")] | Annotated[Friction, Tag("by-object")],
+    Annotated[FaceName, Tag("by-name")]
+    | Annotated[Friction, Tag("by-object")]
+    | Annotated[Stick, Tag("by-stick")],
     Discriminator(_face_tag),
     BeforeValidator(_written_as_it_must_be),
 ]

@@ -17,7 +17,7 @@ from .plausibility import implausible
 from .walls import wall_between
 
 CLOSED = ("slip", "stick", "symmetry")
-PULLING = ("slip", "symmetry")
+PULLING = ("symmetry",)
 """Faces that hold the normal velocity of what is at them, whether it presses on them or leaves."""
 MOST = 5
 """Sentences of one kind: of a hundred drops, five pairs say all."""
@@ -102,7 +102,7 @@ def _falls_out(case: Case) -> Iterator[str]:
 
 
 def _hangs(case: Case) -> Iterator[str]:
-    """Bodies that leave a slip or symmetry face by gravity or by their own motion, and are held there."""
+    """Bodies that leave a symmetry face by gravity or by their own motion, and are held there."""
     g = case.gravity_vector
     for axis in range(case.space_.dim):
         for upwards in (False, True):
@@ -120,7 +120,7 @@ def _hangs(case: Case) -> Iterator[str]:
                     why = "gravity draws" if falls else "its velocity takes"
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
-                        f'"{face}" face does not let go of what is at it; one of kind "friction" does'
+                        f'"{face}" face does not let go of what is at it; "slip" does'
                     )
 
 

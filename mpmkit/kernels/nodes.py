@@ -1,10 +1,13 @@
 """Nodes alone: images at the faces, velocities, the momentum equation and its boundary conditions.
 
-A mirror face (a slip wall or a symmetry plane) is exact: what particles put on the ghost nodes behind it is
-folded onto the image in front of it with the normal component reversed, as the mirrored scene would put it
-there, and after the momentum equation the ghosts get the image's velocity back. A periodic face folds and
-fills in the same way; a stick wall continues the velocity as an odd function, all components reversed. A
-Coulomb wall is a mirror behind the nodes that touch it and open behind the others.
+A mirror face (a symmetry plane) is exact: what particles put on the ghost nodes behind it is folded onto the
+image in front of it with the normal component reversed, as the mirrored scene would put it there, and after the
+momentum equation the ghosts get the image's velocity back. A periodic face folds and fills in the same way.
+
+A wall acts only at nodes that are touched, see ``kernels.touch``; behind the others it is open. Where it acts, a
+Coulomb wall (a slip wall is one without friction) is a mirror, and a stick wall continues the velocity as an odd
+function, all components reversed. A Coulomb wall, and a stick wall that releases, acts at those of the touched
+nodes that it pushed when the momentum equation was solved last.
 
 Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
@@ -24,18 +27,32 @@ import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, function, inline, kernel
-from .scatter import CONTACT, NODE
+from .scatter import CONTACT, NODE, PUSHED, TOUCHED
 
 FEW = 1000
 """Nodes of a plane below which more threads than one are not worth their start."""
 PLANES = 3
 """Planes of ghosts an axis: of its lower face, of its upper face, and the upper face of a periodic axis."""
-OPEN, MIRROR, STICK, PERIODIC, FRICTION = range(5)
+OPEN, MIRROR, STICK, PERIODIC, FRICTION, RELEASING_STICK = range(6)
+
+
+@inline()
+def is_wall(face):
+    """Whether a face acts only where it is touched."""
+    return face == STICK or face == FRICTION or face == RELEASING_STICK
+
+
+@inline()
+def _acting(face, a):
+    """The bit of a node's ``CONTACT`` that says whether a face across axis a acts there; 0 if it always does."""
+    if face == STICK:
+        return TOUCHED << a
+    return PUSHED << a if face == FRICTION or face == RELEASING_STICK else 0
 
 
 @kernel()
 def clear(nodes, rows, tasks):
-    """All records to zero, but for what is remembered of contact with a wall."""
+    """All records to zero, but for what is known of contact with a wall."""
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
@@ -44,13 +61,13 @@ def clear(nodes, rows, tasks):
 
 
 @inline()
-def _move(nodes, mirror, contact, first, last, sign, folding):
+def _move(nodes, mirror, acting, first, last, sign, folding):
     """Slots first..last-1 of a ghost, times ``sign``, onto its image; or back, if not ``folding``.
 
-    With ``contact``, the bit of an axis, only if the node between them touches the wall along it.
+    With ``acting``, a bit of ``CONTACT``, only if the node between them has it.
     """
     ghost, image, wall = mirror
-    if not contact or int(nodes[wall, CONTACT]) & contact:
+    if not acting or int(nodes[wall, CONTACT]) & acting:
         for q in range(first, last):
             if folding:
                 nodes[image, q] += sign[q] * nodes[ghost, q]
@@ -60,17 +77,17 @@ def _move(nodes, mirror, contact, first, last, sign, folding):
 
 
 @function()
-def _move_few(nodes, mirrors, contact, first, last, sign, folding):
+def _move_few(nodes, mirrors, acting, first, last, sign, folding):
     for k in range(len(mirrors)):
-        _move(nodes, mirrors[k], contact, first, last, sign, folding)
+        _move(nodes, mirrors[k], acting, first, last, sign, folding)
 
 
 @kernel()
-def _move_many(nodes, mirrors, contact, first, last, sign, folding):
+def _move_many(nodes, mirrors, acting, first, last, sign, folding):
     n = len(mirrors)
     for c in prange(chunk_count(n)):
         for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            _move(nodes, mirrors[k], contact, first, last, sign, folding)
+            _move(nodes, mirrors[k], acting, first, last, sign, folding)
 
 
 @function()
@@ -79,7 +96,7 @@ def _parity(face, axis, dim, vectors):
     sign = np.ones(NODE)
     if vectors and face != PERIODIC:
         for d in range(dim):
-            if d == axis or face == STICK:
+            if d == axis or face == STICK or face == RELEASING_STICK:
                 sign[1 + d] = sign[1 + dim + d] = -1.0
     return sign
 
@@ -93,12 +110,12 @@ def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
             begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
             if begin < end:
                 face = faces[a, min(plane, 1)]
-                contact = 1 << a if face == FRICTION and vectors else 0
+                acting = _acting(face, a) if vectors else 0
                 of_plane, sign = mirrors[begin:end], _parity(face, a, dim, vectors)
                 if len(of_plane) < FEW:
-                    _move_few(nodes, of_plane, contact, first, last, sign, folding)
+                    _move_few(nodes, of_plane, acting, first, last, sign, folding)
                 else:
-                    _move_many(nodes, of_plane, contact, first, last, sign, folding)
+                    _move_many(nodes, of_plane, acting, first, last, sign, folding)
 
 
 @function()
@@ -124,66 +141,58 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
     then the other walls, then the drag of the Coulomb walls: no axis is before another.
     """
     dim = len(faces)
-    rubs = (faces == FRICTION).any()
-    grip = np.zeros(len(mirrors) if rubs and solved else 0)  # largest drag on each wall node, m/s
+    grip = np.zeros(len(mirrors) if solved else 0)  # largest drag on each wall node, m/s
     for turn in range(3):
         for a in range(dim):
             for side in range(2):
                 face, plane = faces[a, side], PLANES * a + side
-                of_face = mirrors[plane_first[plane] : plane_first[plane + 1]]
-                if face == FRICTION and solved and turn != 1:
-                    its_grip = grip[plane_first[plane] : plane_first[plane + 1]]
-                    if turn == 0:
-                        _push(nodes, dim, of_face, a, 1 - 2 * side, friction[a, side], its_grip)
-                    else:
-                        _drag(nodes, dim, of_face, a, its_grip)
-                elif face == FRICTION and turn == 0:
-                    _keep_contact(nodes, of_face, a)
-                elif face in (MIRROR, STICK) and turn == 1:
-                    _hold(nodes, dim, of_face, face, a, solved)
-
-
-@function()
-def _hold(nodes, dim, mirrors, face, a, solved):
-    """Slip and stick walls hold the nodes in their plane along the normal, and along all axes."""
-    for k in range(len(mirrors)):
-        node = nodes[mirrors[k, 2]]
-        for d in range(dim):
-            if d == a or face == STICK:
-                node[1 + d] = 0.0
-                if solved:
-                    node[1 + dim + d] = 0.0
-
-
-@function()
-def _keep_contact(nodes, mirrors, a):
-    """The normal velocity of nodes that touch a Coulomb wall."""
-    for k in range(len(mirrors)):
-        node = nodes[mirrors[k, 2]]
-        if int(node[CONTACT]) & 1 << a:
-            node[1 + a] = 0.0
+                begin, end = plane_first[plane], plane_first[plane + 1]
+                pushes = face == FRICTION or face == RELEASING_STICK
+                if turn == 0 and solved and pushes:
+                    _push(nodes, dim, mirrors[begin:end], a, 1 - 2 * side, friction[a, side], grip[begin:end])
+                elif turn == 1 and face != OPEN and face != PERIODIC:
+                    sticks = face == STICK or face == RELEASING_STICK
+                    _hold(nodes, dim, mirrors[begin:end], _acting(face, a), a, sticks, solved)
+                elif turn == 2 and solved and face == FRICTION:
+                    _drag(nodes, dim, mirrors[begin:end], a, grip[begin:end])
 
 
 @function()
 def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
-    """A Coulomb wall pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
+    """A wall that pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
 
-    Whether a node is in contact is decided once a step, by the momentum equation: it is if the wall must take
-    up velocity towards it. Until the next decision its normal velocity is held, whatever its sign; a contact
-    that opened as soon as the mapped velocity turned would strain the last cell on approach but never on
+    Whether it pushes a node that is touched is decided once a step, by the momentum equation: it does if it must
+    take up velocity towards it. Until the next decision the normal velocity is held, whatever its sign; a wall
+    that let go as soon as the mapped velocity turned would strain the last cell on approach but never on
     departure, and with USF and MUSL feed energy in.
     """
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
-        contacts, this = int(node[CONTACT]), 1 << a  # a node in a corner may touch one wall and not the other
+        contacts, this = (
+            int(node[CONTACT]),
+            PUSHED << a,
+        )  # a node in a corner may touch one wall and not the other
         push = -inward * node[1 + a]
-        if push > 0.0:
+        if push > 0.0 and contacts & TOUCHED << a:
             node[CONTACT] = contacts | this
             node[1 + dim + a] -= node[1 + a]
             node[1 + a] = 0.0
             grip[k] = coefficient * push
         else:
             node[CONTACT] = contacts & ~this
+
+
+@function()
+def _hold(nodes, dim, mirrors, acting, a, sticks, solved):
+    """Along the normal, or along all axes if it ``sticks``, nodes where a face acts have its velocity, zero."""
+    for k in range(len(mirrors)):
+        node = nodes[mirrors[k, 2]]
+        if not acting or int(node[CONTACT]) & acting:
+            for d in range(dim):
+                if d == a or sticks:
+                    if solved:
+                        node[1 + dim + d] -= node[1 + d]
+                    node[1 + d] = 0.0
 
 
 @function()
@@ -273,5 +282,5 @@ def solve_momentum(nodes, rows, tasks, faces, mirrors, plane_first, friction, dt
                         nodes[i, 1 + d] += change
                         nodes[i, 1 + dim + d] = change
     _constrain(nodes, faces, mirrors, plane_first, friction, True)
-    # With contact, the record's last: a ghost in the plane of a Coulomb wall touches it where its image does.
+    # With contact, the record's last: a wall pushes a ghost in its plane where it pushes its image.
     fill(nodes, faces, mirrors, plane_first, 1, CONTACT + 1, True)

@@ -16,6 +16,28 @@ from __future__ import annotations
 import numpy as np
 
 from .compile import function
+from .nodes import FRICTION, MIRROR, RELEASING_STICK, STICK
+from .scatter import CONTACT, PUSHED, TOUCHED
+
+
+@function()
+def find_free_axes(nodes, at, faces, dim, free):
+    """Bits of the axes along which no face of the grid holds a node, into ``free`` (nodes,), of nodes ``at``.
+
+    ``faces`` (nodes, dim) has the code of the face across each axis on which a node lies.
+    """
+    for g in at:
+        bits = (1 << dim) - 1
+        contact = int(nodes[g, CONTACT])
+        for a in range(dim):
+            face = faces[g, a]
+            if face == MIRROR or (face == FRICTION and contact & PUSHED << a):
+                bits &= ~(1 << a)
+            elif (face == STICK and contact & TOUCHED << a) or (
+                face == RELEASING_STICK and contact & PUSHED << a
+            ):
+                bits = 0
+        free[g] = bits
 
 
 @function()

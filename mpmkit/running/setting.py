@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..case.faces import Stick
 from ..case.model import Case, Face
 
 FLOORS = {
@@ -36,4 +37,6 @@ def setting(case: Case) -> list[str]:
 def _in_words(face: Face) -> str:
     if isinstance(face, str):
         return FLOORS[face]
+    if isinstance(face, Stick):
+        return FLOORS["stick"] + (", and lets go where it would have to pull" if face.releases else "")
     return f"friction, with the coefficient {face.coefficient:g}"

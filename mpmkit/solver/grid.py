@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case.faces import Friction
+from ..case.faces import Friction, Stick
 from ..case.model import Case
 from ..kernels import nodes as node_kernels
 from ..kernels.scatter import CONTACT, NODE, PAIR
@@ -18,14 +18,14 @@ from .stateful import State
 
 FACE_CODES = {
     "open": node_kernels.OPEN,
-    "slip": node_kernels.MIRROR,
+    "slip": node_kernels.FRICTION,
     "symmetry": node_kernels.MIRROR,
     "stick": node_kernels.STICK,
     "periodic": node_kernels.PERIODIC,
 }
 KEPT = (0, CONTACT)
 """Entries of a node's record, its mass and its contact, that are read before a step writes them again: by the
-guard of the mass, and by the friction of a wall."""
+guard of the mass, and by walls that push."""
 GHOST = 1
 """Layers of nodes beyond each face: as many as the widest particle at a face can touch."""
 
@@ -53,6 +53,8 @@ class Grid:
             if isinstance(face, Friction):
                 faces.flat[index] = node_kernels.FRICTION
                 friction.flat[index] = face.coefficient
+            elif isinstance(face, Stick):
+                faces.flat[index] = node_kernels.RELEASING_STICK if face.releases else node_kernels.STICK
             else:
                 faces.flat[index] = FACE_CODES[face]
         if space.radial:
@@ -73,6 +75,16 @@ class Grid:
     def nodes(self) -> tuple[int, ...]:
         """Nodes along each axis, ghosts included."""
         return tuple(int(n) + 1 + 2 * GHOST for n in self.cells)
+
+    @cached_property
+    def walls(self) -> np.ndarray:
+        """Faces that act only where they are touched, ``(dim, 2)``; a plane of symmetry is none of them."""
+        return np.array([[node_kernels.is_wall(face) for face in pair] for pair in self.faces])
+
+    @cached_property
+    def walled(self) -> bool:
+        """Whether there is any wall."""
+        return bool(self.walls.any())
 
     @property
     def periodic(self) -> np.ndarray:
@@ -182,8 +194,8 @@ class Window:
         return count if count > self._capacity else 0
 
     def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Which nodes touch a Coulomb wall, and the block's lower corner: all that outlives a window."""
-        if self._cells is None or not (self.grid.faces == node_kernels.FRICTION).any():
+        """Which nodes the walls pushed last, and the block's lower corner: all that outlives a window."""
+        if self._cells is None or not self.grid.walled:
             return None
         return self.lower, self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim]).copy()
 

@@ -10,19 +10,18 @@ from ..kernels.nodes import OPEN, PERIODIC
 from .grid import Grid, Window
 
 
-def node_volumes(window: Window, radial: bool) -> np.ndarray:
+def node_volumes(window: Window, radial: bool, on_axis: float = math.inf) -> np.ndarray:
     """V_n = ∫ N_n dV over the domain, m³, of every node of a window, ``(nodes,)``.
 
     A body whose boxes tile it has Σ_p V_p N_np = V_n at a node inside, whatever the shape function, and less
     at its surface. What lies on ghosts counts to their images, so that these have room for both. Only on an
-    axis does it depend on the shape function, Δx²/6 turns with boxes and Δx²/5 with splines: none is given
-    there, but infinity.
+    axis does it depend on the shape function: ``on_axis`` there, in Δx² turns; default: infinity.
     """
     grid = window.grid
     volumes = np.ones(1)
     for axis in range(grid.dim):
         number = window.lower[axis] + np.arange(window.shape[axis])
-        along = _radial(grid, number) if radial and axis == 0 else _straight(grid, axis, number)
+        along = _radial(grid, number, on_axis) if radial and axis == 0 else _straight(grid, axis, number)
         volumes = np.multiply.outer(volumes, along)
     return volumes.ravel()
 
@@ -36,9 +35,9 @@ def _straight(grid: Grid, axis: int, number: np.ndarray) -> np.ndarray:
     return length
 
 
-def _radial(grid: Grid, number: np.ndarray) -> np.ndarray:
+def _radial(grid: Grid, number: np.ndarray, on_axis: float) -> np.ndarray:
     """∫ N_n 2 π r dr: 2 π r Δx, and at a wall half of that, less since the half is the inner one."""
-    turns = np.where(number == 0, math.inf, np.abs(number))
+    turns = np.where(number == 0, on_axis, np.abs(number))
     if grid.faces[0, 1] != OPEN:
         turns = np.where(number == grid.cells[0], number / 2 - 1 / 6, turns)
     return 2 * math.pi * grid.cell_size**2 * turns

@@ -22,6 +22,7 @@ from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .touch import Touch
 from .walls import Walls
 
 WIDEST = 9
@@ -76,6 +77,7 @@ class SceneOperations:
         self.averager = Averager(
             self.particles, self.window, self.sorting, self.walls, self.base, self.weight
         )
+        self.touch = Touch(self.grid, self.particles, self.radial, support)
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
@@ -121,6 +123,7 @@ class SceneOperations:
             self._begun += 1
             self.walls.move_to(time)
             self._evaluate_shapes()
+            self.touch.mark(self.window, self.sorting, self.base, self.weight, begins=self._begun == 1)
             self.walls.mark(self.base, self.weight)
         return lost
 

@@ -10,6 +10,7 @@ from bands import below, close_to
 
 import mpmkit
 from mpmkit.errors import GuardStop
+from mpmkit.kernels.scatter import CONTACT, PUSHED, TOUCHED
 from mpmkit.registry import installed
 
 pytestmark = pytest.mark.section(6)
@@ -107,15 +108,41 @@ def throw(face, kind, order, until=0.5):
     return sign * back[axis], (end["kinetic_energy"] + end["strain_energy"]) / start
 
 
+RELEASING = {"kind": "stick", "releases": True}
+
+
 @pytest.mark.parametrize("order", ORDERS)
-@pytest.mark.parametrize("kind", ["slip", "symmetry", "stick", rub(0.3)], ids=str)
+@pytest.mark.parametrize("kind", ["slip", "symmetry", RELEASING, rub(0.3)], ids=str)
 def test_block_bounces_off_every_face(kind, order):
-    """It comes back with most of its momentum and no more energy than it had, alike from the four faces."""
+    """It comes back with most of its momentum and no more energy than it had, alike from the four faces.
+
+    A wall stops the nodes in its plane at the moment of touch. They stand for half a cell, here an eighth of the
+    block, and their energy is lost; USL damps what the jolt sets ringing as well.
+    """
     found = [throw(face, kind, order) for face in ("x_min", "x_max", "z_min", "z_max")]
+    least = 0.7 if kind == "symmetry" else 0.45 if order == "usl" else 1 - 1 / 8 - 0.06
     for speed, energy in found:
         assert -1.0 < speed < -0.6
-        assert 0.7 < energy < 1.06  # USF feeds 3 to 4 % in, as it does without walls
+        assert least < energy < 1.06  # USF feeds 3 to 4 % in, as it does without walls
     np.testing.assert_allclose(found, [found[0]] * 4, rtol=1e-6)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_block_stays_where_it_sticks(order):
+    """A stick wall holds what touches it: a block thrown at it, slowly, neither bounces off nor slides."""
+    faces, velocity = {"z_min": "stick"}, (0.1, -0.2)
+    simulation = scene([4, 0.25], [8, 4.25], [[0, 12], [0, 8]], faces, (0, 0), velocity, SOFT, order=order)
+    p = simulation.particles
+    while simulation.time < 0.07:  # it touches at 0.0625 s
+        simulation.advance()
+    feet = p.number[p.position[:, 1] < 0.5 * DX]
+    landed = p.position[np.isin(p.number, feet), 0].mean()
+    while simulation.time < 0.5:
+        simulation.advance()
+    here = p.position[np.isin(p.number, feet)]
+    assert len(feet) == 8
+    assert here[:, 1].max() < 0.3 * DX
+    assert abs(here[:, 0].mean() - landed) < 0.03 * DX
 
 
 # --- Stick --------------------------------------------------------------------------------------------------
@@ -150,23 +177,30 @@ def test_layer_hangs_on_a_stick_floor(validate, shape):
     validate(f"Sheared layer on a stick floor, {shape}: shear stress, largest error", off, below(0.04, "0"))
 
 
-@pytest.mark.parametrize("kind", ["stick", "slip", rub(0.5)], ids=str)
+@pytest.mark.parametrize("kind", ["stick", "slip", RELEASING, rub(0.5)], ids=str)
 def test_nodes_of_a_wall_obey_it(kind):
-    """As the momentum equation leaves them; MUSL would map anew, with contact as it was decided before."""
+    """Those that are touched, as the momentum equation leaves them; MUSL would map anew, with the same contact."""
     faces, order = {"z_min": kind}, "usl"
     simulation = scene([2, 0], [6, 4], [[0, 12], [0, 8]], faces, (2.0, -G), (1.0, -0.5), SOFT, order=order)
+    seen = 0
     for _ in range(50):
         simulation.advance()
         window = simulation.operations.window
         nodes = window.nodes.reshape(*window.shape[:2], -1)
         floor = nodes[:, window.walls[1, 0]]
-        heavy = floor[:, 0] > 0
-        assert (floor[heavy, 2] >= -1e-15).all()  # nothing moves into the wall
+        contacts = floor[:, CONTACT].astype(int)
+        touched, pushed = contacts & TOUCHED << 1 > 0, contacts & PUSHED << 1 > 0
+        seen += touched.sum()
+        assert (floor[touched, 2] >= -1e-15).all()  # nothing moves into the wall
+        assert (touched | ~pushed).all()
         if kind == "stick":
-            assert (floor[:, 1:3] == 0).all()
-        elif kind == "slip":
-            assert (floor[:, 2] == 0).all()
-            assert np.abs(floor[heavy, 1]).max() > 0.5
+            assert (floor[touched, 1:3] == 0).all()
+        elif kind == RELEASING:
+            assert (floor[pushed, 1:3] == 0).all()
+        else:
+            assert (floor[pushed, 2] == 0).all()
+            assert kind != "slip" or np.abs(floor[touched, 1]).max(initial=1.0) > 0.5
+    assert seen > 0
 
 
 # --- Friction -----------------------------------------------------------------------------------------------
@@ -239,11 +273,12 @@ def test_block_slides_in_three_dimensions():
 
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("overlap", [0.0, 0.15])
-def test_friction_wall_does_not_pull(overlap, order):
+@pytest.mark.parametrize("kind", ["slip", RELEASING, rub(0.5)], ids=str)
+def test_wall_does_not_pull(kind, overlap, order):
     """A block that is lifted off leaves the wall as it leaves no wall at all, boxes over the wall or not."""
     motion = {"gravity": (0.0, 2.0), "velocity": (0.0, 0.5), "order": order}
     free = scene([2, 1], [6, 5], [[0, 12], [0, 30]], {}, **motion)
-    wall = scene([2, 0], [6, 4], [[0, 12], [0, 30]], {"z_min": rub(0.5)}, **motion)
+    wall = scene([2, 0], [6, 4], [[0, 12], [0, 30]], {"z_min": kind}, **motion)
     for block in (free, wall):
         block.particles.position[:, 1] -= overlap * DX
     for _ in range(100):

@@ -131,6 +131,7 @@ class Wall:
     def act(self, rehearse: bool, dt: float | None) -> None:
         """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
         w = self.near
+        w.see_faces()
         count = wall_contact.at_wall_velocities(
             w.window.nodes, w.at_wall, w.at, w.d, w.normal, w.index, w.weight, w.free, w.acting, w.share,
             w.stiffness, w.velocity, w.inner,

@@ -7,7 +7,7 @@ import numpy as np
 from ...contracts import Contact
 from ...contracts.contact import initial_memory
 from ...kernels import ghosts, wall_nodes, wall_reach
-from ...kernels.nodes import FRICTION, OPEN, PERIODIC, STICK
+from ...kernels.nodes import OPEN
 from ...registry import audit
 from ..grid import Grid, Window
 
@@ -39,7 +39,8 @@ class WallNodes:
         if grid.radial:
             places[:, 0] = np.abs(places[:, 0])
         self.places = grid.lower + places * grid.cell_size
-        self.free = _free_axes(grid, number)
+        self._faces = _faces_at(grid, number)
+        self.free = np.zeros(len(active), dtype=np.int64)
         count = len(active)
         self.dense = np.full(count, wall_nodes.FAR)
         self.touched = np.zeros(count, dtype=np.uint8)
@@ -115,6 +116,10 @@ class WallNodes:
         if self.grid.radial:
             self.wall_velocity[self.number[:, 0] < 0, 0] *= -1.0
 
+    def see_faces(self) -> None:
+        """Find the axes along which no face of the grid holds a node, in the present state of the nodes."""
+        wall_contact.find_free_axes(self.window.nodes, self.at, self._faces, self.grid.dim, self.free)
+
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
         """Keep what a contact remembers; nodes at which it does not act forget."""
         for name, array in self.memory.items():
@@ -122,14 +127,10 @@ class WallNodes:
             array[self.at[acting]] = memory[name]
 
 
-def _free_axes(grid: Grid, number: np.ndarray) -> np.ndarray:
-    """Bits of the axes along which no face of the grid holds the nodes, ``(n,)``."""
-    free = np.full(len(number), (1 << grid.dim) - 1, dtype=np.int64)
+def _faces_at(grid: Grid, number: np.ndarray) -> np.ndarray:
+    """The codes of the faces on which nodes lie, ``(n, dim)``; that of an open one elsewhere."""
+    faces = np.full(number.shape, OPEN)
     for axis in range(grid.dim):
         for side, plane in enumerate((0, int(grid.cells[axis]))):
-            face, on = grid.faces[axis, side], number[:, axis] == plane
-            if face == STICK:
-                free[on] = 0
-            elif face not in (OPEN, PERIODIC, FRICTION):
-                free[on] &= ~(1 << axis)
-    return free
+            faces[number[:, axis] == plane, axis] = grid.faces[axis, side]
+    return faces
