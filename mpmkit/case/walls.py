@@ -100,8 +100,10 @@ def _gap(
     """
     lower, upper = bounds
     extent = upper - lower
-    spacing = max(case.grid.cell_size, float(np.prod(extent) / POINTS) ** (1 / len(extent)))
-    count = np.maximum(1, np.ceil(extent / spacing)).astype(int)
+    spacing = case.grid.cell_size
+    while np.prod(count := np.ceil(extent / spacing)) > POINTS:
+        spacing *= 2
+    count = count.astype(int)
     index = np.indices(count).reshape(len(count), -1).T
     distance, _ = surface.distance(lower + (index + 0.5) * extent / count, time)
     return float(distance.min()) - math.hypot(*(extent / count)) / 2
