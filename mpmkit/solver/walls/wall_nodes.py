@@ -6,7 +6,7 @@ import numpy as np
 
 from ...contracts import Contact
 from ...contracts.contact import initial_memory
-from ...kernels import ghosts, wall_nodes, wall_reach
+from ...kernels import ghosts, wall_contact, wall_nodes, wall_reach
 from ...kernels.nodes import OPEN
 from ...registry import audit
 from ..grid import Grid, Window
