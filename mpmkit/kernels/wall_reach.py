@@ -67,7 +67,7 @@ def keep_out(position, cell_size, lower, strides, distance):
 
 @function()
 def mark_touched(position, half_size, inverse, base, weight, lower, strides, distance, touched):
-    """Mark the nodes on which a particle has weight whose box reaches the wall.
+    """Mark the nodes on which a particle has weight whose box reaches the wall; how many particles do.
 
     Args:
         distance: (nodes,) of the window, in cells; ``FAR`` away from the wall.
@@ -76,6 +76,7 @@ def mark_touched(position, half_size, inverse, base, weight, lower, strides, dis
     n, dim = position.shape
     support = weight.shape[2]
     planes = support if dim == 3 else 1
+    count = 0
     slope = np.empty(dim)
     for p in range(n):
         if not _is_near(position, p, inverse, lower, strides, distance):
@@ -86,6 +87,7 @@ def mark_touched(position, half_size, inverse, base, weight, lower, strides, dis
             reach += half_size[p, a] * inverse * abs(slope[a])
         if not d <= reach:
             continue
+        count += 1
         first = 0
         for a in range(dim):
             first += (base[p, a] - lower[a]) * strides[a]
@@ -96,3 +98,4 @@ def mark_touched(position, half_size, inverse, base, weight, lower, strides, dis
                 for k in range(support):
                     if w * weight[p, dim - 1, k] > 0.0:
                         touched[row + k] = 1
+    return count

@@ -20,6 +20,7 @@ class Wall:
     """A surface with a contact, on the nodes of a window. Lengths are in cells, but for places.
 
     Attributes:
+        touches: how many particles touch it in this step.
         sums: what the wall has given to the material so far: impulse, N s, ``(dim,)``, its moment about the
             origin of the scene, N m s, ``(3,)`` or ``(1,)`` about the axis out of the plane, and work, J.
     """
@@ -35,6 +36,7 @@ class Wall:
         self._mapped = np.zeros(len(self.sums))
         self._found = self._sorted = self._time = self._moved = self._lag = 0.0
         self._there = self.changes = False
+        self.touches = 0
         self._near: WallNodes | None = None
 
     @property
@@ -113,15 +115,21 @@ class Wall:
     def mark(self, position: np.ndarray, half_size: np.ndarray, base: np.ndarray, weight: np.ndarray) -> None:
         """Find the nodes that material touches, by the boxes of the particles and their weights."""
         w = self.near
+        before, self.touches = self.touches, 0
+        self._mapped[:] = 0.0
         w.touched[w.at] = 0
         if self._there:
-            wall_reach.mark_touched(
+            self.touches = wall_reach.mark_touched(
                 position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense,
                 w.touched,
             )  # fmt: skip
+        if before and not self.touches:
+            w.forget()
 
     def fold(self, momentum: bool, forces: bool) -> None:
         """Fold what lies on its ghosts."""
+        if not self.touches:
+            return
         w = self.near
         ghosts.fold(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
@@ -130,6 +138,8 @@ class Wall:
 
     def act(self, rehearse: bool, dt: float | None) -> None:
         """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
+        if not self.touches:
+            return
         w = self.near
         w.see_faces()
         count = wall_contact.at_wall_velocities(
@@ -153,9 +163,7 @@ class Wall:
             w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
             nodes.velocity, self.odd, self.pulls, SWEEPS, dt is not None, impulse,
         )  # fmt: skip
-        wall_contact.add_up(
-            impulse, acting, w.place, w.d * self.grid.cell_size, w.normal, w.wall_velocity, sums
-        )
+        self._add_up(impulse, acting, sums)
 
     def _given(self, count: int, dt: float | None) -> ContactNodes:
         w = self.near
@@ -179,6 +187,8 @@ class Wall:
 
     def fill(self, dt: float | None) -> None:
         """Fill its ghosts with velocities as mapped, or as solved in a step of ``dt`` s."""
+        if not self.touches:
+            return
         w = self.near
         ghosts.fill(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,

@@ -47,6 +47,7 @@ class WallNodes:
         self._pressed = np.zeros(count)
         self._taken = np.zeros(count, dtype=np.uint8)
         self.memory = initial_memory(contact, count)
+        self._at_start = initial_memory(contact, 1)
         self.found = self.sorted = False
 
     def take_memory(self, before: WallNodes) -> None:
@@ -122,9 +123,14 @@ class WallNodes:
 
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
         """Keep what a contact remembers; nodes at which it does not act forget."""
+        self.forget()
         for name, array in self.memory.items():
-            array[self.at] = self.contact.memory[name].at_start(self.contact)
             array[self.at[acting]] = memory[name]
+
+    def forget(self) -> None:
+        """Let the nodes near the wall forget what its contact remembers."""
+        for name, array in self.memory.items():
+            array[self.at] = self._at_start[name]
 
 
 def _faces_at(grid: Grid, number: np.ndarray) -> np.ndarray:

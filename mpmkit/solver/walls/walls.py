@@ -119,7 +119,7 @@ class Walls:
 
     def constrain(self, dt: float | None = None, rehearse: bool = False) -> None:
         """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill all ghosts."""
-        if not self.walls:
+        if not any(wall.touches for wall in self.walls):
             return
         for wall in self.walls:
             wall.act(rehearse, dt)
@@ -137,14 +137,18 @@ class Walls:
     def fold_pairs(self, pairs: np.ndarray) -> None:
         """Fold the sums of an average."""
         for wall in self.walls:
+            if not wall.touches:
+                continue
             w = wall.near
             ghosts.fold_pairs(pairs, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
 
     def fill_average(self, average: np.ndarray) -> None:
         """Fill an average, that of the ghosts of the faces too."""
-        if not self.walls:
+        if not any(wall.touches for wall in self.walls):
             return
         for wall in reversed(self.walls):
+            if not wall.touches:
+                continue
             w = wall.near
             ghosts.fill_average(average, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
         active = self.sorting.active
