@@ -19,7 +19,9 @@ def block(dim, seed=6):
     walls = np.array([[1, n - 2] for n in shape[:dim]], dtype=np.int64)
     records = rng.normal(size=(int(np.prod(shape)), NODE))
     records[:, 0] = rng.uniform(1, 2, len(records))
-    records[:, CONTACT] = rng.integers(0, 2**dim, len(records)) + TOUCHED * rng.integers(0, 2**dim, len(records))
+    records[:, CONTACT] = rng.integers(0, 2**dim, len(records)) + TOUCHED * rng.integers(
+        0, 2**dim, len(records)
+    )
     return records, shape, walls
 
 

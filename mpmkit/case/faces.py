@@ -25,7 +25,7 @@ class Stick(Model):
 
     kind: Literal["stick"]
     releases: bool = Field(
-        description="whether the wall lets go of material that it would have to pull; the plain name \"stick\" "
+        description='whether the wall lets go of material that it would have to pull; the plain name "stick" '
         "does not"
     )
 
@@ -75,7 +75,9 @@ def _face_tag(value: Any) -> str:
 
 
 Face = Annotated[
-    Annotated[FaceName, Tag("by-name")] | Annotated[Friction, Tag("by-object")] | Annotated[Stick, Tag("by-stick")],
+    Annotated[FaceName, Tag("by-name")]
+    | Annotated[Friction, Tag("by-object")]
+    | Annotated[Stick, Tag("by-stick")],
     Discriminator(_face_tag),
     BeforeValidator(_written_as_it_must_be),
 ]

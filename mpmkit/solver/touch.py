@@ -1,10 +1,10 @@
-"""Where material touches the walls: a wall acts at a node only in steps in which material has reached it there.
+"""Where material touches the walls: a wall acts at a node only in steps in which material has reached it.
 
 A particle has weight on the nodes of a wall when it is still up to a cell away. A wall that stopped it there
-would do so in the air, and the cell in front of it would stay half empty: through so few particles what sticks
-to the wall is held by half of the stress only. So a node is free until the box of a particle with weight on it
-comes within ``kernels.touch.REACH`` of the wall, or until the node is full: where particles lie in disorder, single
-boxes stand off further though there is no room left.
+would do so in the air, and the cell in front of it would stay half empty: through so few particles what
+sticks to the wall is held by half of the stress only. So a node is free until the box of a particle with
+weight on it comes within ``kernels.touch.REACH`` of the wall, or until the node is full: where particles
+lie in disorder, single boxes stand off further though there is no room left.
 """
 
 from __future__ import annotations
@@ -27,14 +27,16 @@ class Touch:
     def __init__(self, grid: Grid, particles: Particles, radial: bool, support: int) -> None:
         self._particles, self._radial = particles, radial
         self._walled, self._cell_size = grid.walled, grid.cell_size
-        self._walls = np.where(grid.walls, np.stack([np.zeros_like(grid.cells), grid.cells], axis=1), touch.NOWHERE)
+        self._walls = np.where(
+            grid.walls, np.stack([np.zeros_like(grid.cells), grid.cells], axis=1), touch.NOWHERE
+        )
         self._mark = touch.mark(grid.dim, support)
         self._sorts, self._room = -1, np.zeros(0)
 
     def mark(
         self, window: Window, sorting: Sorting, base: np.ndarray, weight: np.ndarray, begins: bool
     ) -> None:
-        """Mark the nodes of a window, for the weights of the step; ``begins``: for the first time in a run."""
+        """Mark the nodes of a window, for the weights of the step; ``begins``: for the first in a run."""
         if not self._walled:
             return
         p, active = self._particles, sorting.active
@@ -42,7 +44,7 @@ class Touch:
             room = node_volumes(window, self._radial, ROOM_ON_AXIS)
             self._sorts, self._room = sorting.sorts, room[active.mirrors[:, 2]]
         self._mark(
-            window.nodes, window.pairs, window.strides, window.lower, self._walls, active.faces, active.mirrors,
-            active.plane_first, sorting.tasks, base, weight, p.position, p.velocity, p.half_size, p.volume,
-            self._room, self._cell_size, begins,
+            window.nodes, window.pairs, window.strides, window.lower, self._walls, active.faces,
+            active.mirrors, active.plane_first, sorting.tasks, base, weight, p.position, p.velocity,
+            p.half_size, p.volume, self._room, self._cell_size, begins,
         )  # fmt: skip
