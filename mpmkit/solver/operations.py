@@ -73,7 +73,7 @@ class SceneOperations:
         self._radial_tables = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
         self._axial_tables = self.base[:, 1:], self.weight[:, 1:], self.gradient[:, 1:]
         self.averager = Averager(self.particles, self.window, self.sorting, self.base, self.weight)
-        self.touch = Touch(self.grid, self.particles, self.radial, support)
+        self.touch = Touch(self.grid, self.particles, self.radial, self.scheme.shape)
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
