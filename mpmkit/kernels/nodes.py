@@ -1,13 +1,14 @@
 """Nodes alone: images at the faces, velocities, the momentum equation and its boundary conditions.
 
 A mirror face (a symmetry plane) is exact: what particles put on the ghost nodes behind it is folded onto the
-image in front of it with the normal component reversed, as the mirrored scene would put it there, and after the
-momentum equation the ghosts get the image's velocity back. A periodic face folds and fills in the same way.
+image in front of it with the normal component reversed, as the mirrored scene would put it there, and after
+the momentum equation the ghosts get the image's velocity back. A periodic face folds and fills in the same
+way.
 
-A wall acts only at nodes that are touched, see ``kernels.touch``; behind the others it is open. Where it acts, a
-Coulomb wall (a slip wall is one without friction) is a mirror, and a stick wall continues the velocity as an odd
-function, all components reversed. A Coulomb wall, and a stick wall that releases, acts at those of the touched
-nodes that it pushed when the momentum equation was solved last.
+A wall acts only at nodes that are touched, see ``kernels.touch``; behind the others it is open. Where it
+acts, a Coulomb wall (a slip wall is one without friction) is a mirror, and a stick wall continues the
+velocity as an odd function, all components reversed. A Coulomb wall, and a stick wall that releases, acts
+at those of the touched nodes that it pushed when the momentum equation was solved last.
 
 Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
@@ -39,15 +40,15 @@ OPEN, MIRROR, STICK, PERIODIC, FRICTION, RELEASING_STICK = range(6)
 @inline()
 def is_wall(face):
     """Whether a face acts only where it is touched."""
-    return face == STICK or face == FRICTION or face == RELEASING_STICK
+    return face in (STICK, FRICTION, RELEASING_STICK)
 
 
 @inline()
 def _acting(face, a):
-    """The bit of a node's ``CONTACT`` that says whether a face across axis a acts there; 0 if it always does."""
+    """The bit of ``CONTACT`` that says whether a face across axis a acts at a node; 0 if it always does."""
     if face == STICK:
         return TOUCHED << a
-    return PUSHED << a if face == FRICTION or face == RELEASING_STICK else 0
+    return PUSHED << a if face in (FRICTION, RELEASING_STICK) else 0
 
 
 @kernel()
@@ -96,7 +97,7 @@ def _parity(face, axis, dim, vectors):
     sign = np.ones(NODE)
     if vectors and face != PERIODIC:
         for d in range(dim):
-            if d == axis or face == STICK or face == RELEASING_STICK:
+            if d == axis or face in (STICK, RELEASING_STICK):
                 sign[1 + d] = sign[1 + dim + d] = -1.0
     return sign
 
@@ -147,11 +148,11 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
             for side in range(2):
                 face, plane = faces[a, side], PLANES * a + side
                 begin, end = plane_first[plane], plane_first[plane + 1]
-                pushes = face == FRICTION or face == RELEASING_STICK
+                pushes = face in (FRICTION, RELEASING_STICK)
                 if turn == 0 and solved and pushes:
                     _push(nodes, dim, mirrors[begin:end], a, 1 - 2 * side, friction[a, side], grip[begin:end])
                 elif turn == 1 and face != OPEN and face != PERIODIC:
-                    sticks = face == STICK or face == RELEASING_STICK
+                    sticks = face in (STICK, RELEASING_STICK)
                     _hold(nodes, dim, mirrors[begin:end], _acting(face, a), a, sticks, solved)
                 elif turn == 2 and solved and face == FRICTION:
                     _drag(nodes, dim, mirrors[begin:end], a, grip[begin:end])
@@ -161,17 +162,14 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
 def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
     """A wall that pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
 
-    Whether it pushes a node that is touched is decided once a step, by the momentum equation: it does if it must
-    take up velocity towards it. Until the next decision the normal velocity is held, whatever its sign; a wall
-    that let go as soon as the mapped velocity turned would strain the last cell on approach but never on
-    departure, and with USF and MUSL feed energy in.
+    Whether it pushes a node that is touched is decided once a step, by the momentum equation: it does if it
+    must take up velocity towards it. Until the next decision the normal velocity is held, whatever its
+    sign; a wall that let go as soon as the mapped velocity turned would strain the last cell on approach
+    but never on departure, and with USF and MUSL feed energy in.
     """
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
-        contacts, this = (
-            int(node[CONTACT]),
-            PUSHED << a,
-        )  # a node in a corner may touch one wall and not the other
+        contacts, this = int(node[CONTACT]), PUSHED << a  # in a corner one wall may push and the other not
         push = -inward * node[1 + a]
         if push > 0.0 and contacts & TOUCHED << a:
             node[CONTACT] = contacts | this
@@ -184,7 +182,7 @@ def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
 
 @function()
 def _hold(nodes, dim, mirrors, acting, a, sticks, solved):
-    """Along the normal, or along all axes if it ``sticks``, nodes where a face acts have its velocity, zero."""
+    """Nodes where a face acts have its velocity, zero: along the normal, or all of it if it ``sticks``."""
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
         if not acting or int(node[CONTACT]) & acting:

@@ -2,9 +2,9 @@
 
 Particles are kept in blocks of cells. Blocks of one colour touch no common node, so that each colour is
 scattered in parallel without a race, in an order that does not depend on the number of threads. A node is a
-record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` what it has to do with walls.
-A particle adds one vector to each record, which is built up axis by axis: what does not depend on the innermost
-axis is multiplied out before it.
+record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` what it has to do with
+walls. A particle adds one vector to each record, which is built up axis by axis: what does not depend on
+the innermost axis is multiplied out before it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from .vectors import LANES, load, pack, plus, scale, store, zero
 NODE = LANES
 """Doubles in a node's record: one cache line, one vector."""
 CONTACT = NODE - 1
-"""Entry of a record that holds a whole number, a sum of two bits an axis: a node lies on one face of it at most."""
+"""Entry of a record that holds a whole number, a sum of bits: of an axis a node lies on one face at most."""
 PUSHED, TOUCHED = 1, 8
-"""The bits of axis 0, those of axis a are ``PUSHED << a`` and ``TOUCHED << a``: whether the wall pushed the node
-when the momentum equation was solved last, and whether material has reached the wall there in this step."""
+"""The bits of axis 0; those of axis a are ``PUSHED << a`` and ``TOUCHED << a``: whether the wall pushed the
+node when the momentum equation was solved last, and whether material has reached it there in this step."""
 PAIR = 2
 """Doubles in a node's record of an average: measure and measure × value."""
 LARGEST_SUPPORT = LANES // PAIR

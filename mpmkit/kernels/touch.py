@@ -1,7 +1,7 @@
 """Which nodes of the walls are touched in a step: those where material has reached the wall.
 
-A particle has weight on the nodes of a wall when it is still up to a cell away. What stops it there stops it in
-the air: see ``solver.touch``.
+A particle has weight on the nodes of a wall when it is still up to a cell away. What stops it there stops
+it in the air: see ``solver.touch``.
 """
 
 from __future__ import annotations
@@ -30,20 +30,21 @@ def mark(dim: int, support: int):
     """The kernel that sets ``TOUCHED`` at the nodes of the walls, for a shape function of that support.
 
     ``mark(nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position,
-    velocity, half_size, volume, room, cell_size, begins)`` marks a node for an axis if the box of a particle with
-    weight on the node reaches the wall across that axis, or if the node is full: Σ V_p N_np > ``FULL`` V_n.
-    Where material has not reached the wall, it is not pushed either. When a run ``begins``, what rests on a wall
-    is taken to be pushed by it.
+    velocity, half_size, volume, room, cell_size, begins)`` marks a node for an axis if the box of a
+    particle with weight on the node reaches the wall across that axis, or if the node is full: Σ V_p N_np >
+    ``FULL`` V_n. Where material has not reached the wall, it is not pushed either. When a run ``begins``,
+    what rests on a wall is taken to be pushed by it.
 
-    ``walls[a, side]`` is the number of the nodes on a face, ``NOWHERE`` if that is no wall. ``room`` is V_n of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes,
-    2)``, for Σ V_p N_np and for bits; it must be zero, and is zero afterwards.
+    ``walls[a, side]`` is the number of the nodes on a face, ``NOWHERE`` if that is no wall. ``room`` is V_n
+    of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes, 2)``, for Σ
+    V_p N_np and for bits; it must be zero, and is zero afterwards.
     """
     planes = support if dim == 3 else 1
 
     @inline()
     def _reach(
-        sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins, p, a,
-        wall, k,
+        sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins,
+        p, a, wall, k,
     ):  # fmt: skip
         """The share of a particle in the nodes of the wall that is k nodes from its first along axis a."""
         V = volume[p] * weight[p, a, k]
@@ -74,8 +75,8 @@ def mark(dim: int, support: int):
 
     @kernel()
     def mark(
-        nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position, velocity,
-        half_size, volume, room, cell_size, begins,
+        nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position,
+        velocity, half_size, volume, room, cell_size, begins,
     ):  # fmt: skip
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):

@@ -77,7 +77,7 @@ class SceneOperations:
         self.averager = Averager(
             self.particles, self.window, self.sorting, self.walls, self.base, self.weight
         )
-        self.touch = Touch(self.grid, self.particles, self.radial, support)
+        self.touch = Touch(self.grid, self.particles, self.radial, self.scheme.shape)
         self._rate = np.zeros(n)
         self._stepped = False
         self._no_rows = np.zeros((0, dim))

@@ -189,11 +189,11 @@ def test_symmetry_planes_stand_for_the_other_half(space, scheme):
 
 
 @each_scheme
-def test_a_slip_floor_stands_for_the_mirrored_body(scheme):
-    """A block that is thrown on a slip floor moves as one that meets its mirror image."""
+def test_a_plane_of_symmetry_stands_for_the_mirrored_body(scheme):
+    """A block that is thrown on a plane of symmetry moves as one that meets its mirror image."""
     body = ([3, 0], [7, 4], RUBBER, [0.0, -1.0])
     image = ([3, -4], [7, 0], RUBBER, [0.0, 1.0])
-    floor = simulate("plane-strain", scheme, [body], [[0, 10], [0, 8]], {"z_min": "slip"})
+    floor = simulate("plane-strain", scheme, [body], [[0, 10], [0, 8]], {"z_min": "symmetry"})
     twins = simulate("plane-strain", scheme, [body, image], [[0, 10], [-8, 8]])
     for _ in range(25):
         floor.advance()

@@ -35,7 +35,7 @@ class Slump:
 
     def __init__(self, case: mpmkit.Case, until: float, threads: int | None = 1) -> None:
         numba.set_num_threads(threads or numba.config.NUMBA_NUM_THREADS)
-        simulation = mpmkit.Simulation(case)
+        self.simulation = simulation = mpmkit.Simulation(case)
         self.time = np.round(np.arange(0, until + STEP / 2, STEP), 2)
         rows = []
         for t in self.time:
