@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import json
 import math
 
 import numba
@@ -143,16 +142,19 @@ def test_a_wall_that_appears_pushes_from_then_on():
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
 @pytest.mark.parametrize(
-    ("contact", "face"),
+    ("contact", "face", "rounding"),
     [
-        ("stick", "stick"),
-        ("slip", {"kind": "friction", "coefficient": 0.0}),  # a face with slip holds what would leave
-        ({"kind": "coulomb", "coefficient": 0.3}, {"kind": "friction", "coefficient": 0.3}),
+        ("stick", "stick", 1e-7),
+        ("slip", {"kind": "friction", "coefficient": 0.0}, 1e-7),  # a face with slip holds what would leave
+        ({"kind": "coulomb", "coefficient": 0.3}, {"kind": "friction", "coefficient": 0.3}, 2e-3),
     ],
     ids=["stick", "slip", "coulomb"],
 )
-def test_a_plane_on_the_nodes_is_a_face(contact, face, order):
-    """A column sags and slides alike on both, to rounding."""
+def test_a_plane_on_the_nodes_is_a_face(contact, face, rounding, order):
+    """A column sags and slides alike on both: to rounding, which nodes with next to no mass magnify.
+
+    Only the drag of a wall counts what is mirrored beyond it: the face of the grid does not.
+    """
     alike = {"gravity": [3.0, -9.81], "scheme": {"order": order, "redistribution": "none"}}
     as_wall = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], contact)}, **alike)
     grid = {"cell_size": CELL, "domain": {"x": [-0.5, 1.0], "z": [0.2, 1.0]}, "faces": {"z_min": face}}
@@ -164,22 +166,37 @@ def test_a_plane_on_the_nodes_is_a_face(contact, face, order):
     a, b = as_wall.particles, as_face.particles
     rows = np.argsort(a.number), np.argsort(b.number)
     fastest = np.abs(b.velocity).max()
-    np.testing.assert_allclose(a.velocity[rows[0]], b.velocity[rows[1]], rtol=0, atol=1e-9 * fastest)
-    places = [s.particles.position[row] + s.grid.lower for s, row in zip((as_wall, as_face), rows, strict=True)]
-    np.testing.assert_allclose(*places, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(a.velocity[rows[0]], b.velocity[rows[1]], rtol=0, atol=rounding * fastest)
+    places = [
+        s.particles.position[row] + s.grid.lower for s, row in zip((as_wall, as_face), rows, strict=True)
+    ]
+    np.testing.assert_allclose(*places, rtol=0, atol=rounding * CELL)
+
+
+def test_contact_is_held_until_it_is_decided_anew():
+    """A node in contact keeps the wall's normal velocity in mapping, though it would leave: no sweep undoes it."""
+    simulation = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], "slip")}, scheme={"order": "usl"})
+    advance(simulation, 2)
+    one = simulation.operations.walls.walls[0]
+    near, nodes = one.near, simulation.operations.window.nodes
+    held = near.at[near.at_wall][near.memory["contact"][near.at[near.at_wall]] == 1]
+    assert len(held) > 4
+    nodes[held, 2] = 0.3
+    one.act(False, None)
+    np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
 
 
 # --- Kernels ------------------------------------------------------------------------------------------------
 
 
 def laid(contact="stick", degrees=25.0, space="plane-strain"):
-    """A wall in the middle of particles, as a step finds it: with nodes at it, ghosts, and their images."""
+    """A wall in the middle of particles, which has yet to appear: nodes at it, ghosts, and their images."""
     normal = [-math.sin(math.radians(degrees)), math.cos(math.radians(degrees))]
-    data = scene({"wall": wall([0.3, 0.2], normal, contact)}, lower=(0.0, 0.35), upper=(0.25, 0.6))
+    data = scene({"wall": wall([0.3, 0.3], normal, contact, appears=0.5)}, lower=(0.0, 0.0), upper=(0.6, 0.6))
     if space == "3d":
         data |= {"space": "3d"}
         data["grid"]["domain"] = {a: [-0.2, 0.5] for a in "xyz"}
-        data["walls"]["wall"]["surface"] |= {"point": [0.1, 0.1, 0.05], "normal": [-0.2, 0.3, 1.0]}
+        data["walls"]["wall"]["surface"] |= {"point": [0.12, 0.12, 0.21], "normal": [-0.2, 0.3, 1.0]}
         data["bodies"][0]["shape"] |= {"lower": [0.0, 0.0, 0.1], "upper": [0.25, 0.25, 0.35]}
         data["bodies"][0]["velocity"] = [0, 0, 0]
     simulation = advance(Simulation(mpmkit.parse_case(data)), 1)
@@ -252,21 +269,16 @@ def test_particles_in_a_wall_are_put_to_its_surface(degrees):
     """Along the normal; the others stay."""
     simulation, near = laid(degrees=degrees)
     normal = np.array([-math.sin(math.radians(degrees)), math.cos(math.radians(degrees))])
-    foot = np.array([0.3, 0.2]) - simulation.grid.lower
+    foot = np.array([0.3, 0.3]) - simulation.grid.lower
     random = np.random.default_rng(7)
-    places = simulation.particles.position[:40].copy()
-    depth = random.uniform(-0.9, 0.9, 40) * CELL
-    places -= (((places - foot) @ normal) - depth)[:, None] * normal
+    across = np.array([normal[1], -normal[0]])
+    depth, along = random.uniform(-0.9, 0.9, 40) * CELL, random.uniform(-0.2, 0.2, 40)
+    places = foot + depth[:, None] * normal + along[:, None] * across
     before = places.copy()
-    window = simulation.operations.window
-    inside = (np.floor(places / CELL) >= window.lower).all(axis=1)
-    inside &= (np.floor(places / CELL) + 1 < window.lower + np.array(window.shape[:2])).all(axis=1)
-    places, before, depth = places[inside], before[inside], depth[inside]
     moved = kernels.keep_out(places, CELL, near.lower, near.strides, near.dense)
     assert moved == (depth < 0).sum() > 3
     np.testing.assert_allclose((places - foot) @ normal, np.maximum(depth, 0.0), rtol=0, atol=1e-12)
     np.testing.assert_array_equal(places[depth >= 0], before[depth >= 0])
-    across = np.array([normal[1], -normal[0]])
     np.testing.assert_allclose(places @ across, before @ across, rtol=0, atol=1e-12)
 
 
@@ -303,14 +315,11 @@ def test_history_of_walls(tmp_path, space):
     assert not force.sel(wall="lid").any()  # far away
     assert float(force.sel(wall="slope", component="z").max()) > 0
     assert (force.isel(time=0) == 0).all()
-    if space != "3d":  # all of it moves with the wall: M g, and what stops the fall
-        given = (force.sel(wall="slope") * history["time"].diff("time").reindex_like(history["time"]).fillna(0)).sum("time")
-        final = json.loads((tmp_path / "run" / "summary.json").read_text())
-        assert final["end_time"] == pytest.approx(0.1)
-        simulation = Simulation(mpmkit.parse_case(data))
-        while simulation.time < 0.1 * (1 - 1e-12):
-            simulation.advance(0.1 - simulation.time)
-        np.testing.assert_allclose(given, simulation.wall_sums()[0, :2], rtol=0.02)
+    whole = Simulation(mpmkit.parse_case(data))
+    while whole.time < 0.1 * (1 - 1e-12):
+        whole.advance(0.1 - whole.time)
+    means = force.sel(wall="slope").values[1:] * np.diff(history["time"].values)[:, None]
+    np.testing.assert_allclose(means.sum(axis=0), whole.wall_sums()[0, : len(axes)], rtol=0.02, atol=1e-3)
 
 
 def test_history_without_walls_has_none(tmp_path):

@@ -83,9 +83,7 @@ def test_a_mould_lifted_ever_faster_tends_to_none(validate):
     """At 10 m/s it is gone in 0.03 s, in which what falls freely falls 4 mm."""
     time, free = slump(None, 0.01, 2.0)
     moving = time >= 0.1 - 1e-9
-    off = {
-        speed: np.abs(slump(speed, 0.01, 2.0)[1] / free - 1)[moving].max() for speed in (0.3, 1.0, 10.0)
-    }
+    off = {speed: np.abs(slump(speed, 0.01, 2.0)[1] / free - 1)[moving].max() for speed in (0.3, 1.0, 10.0)}
     assert off[0.3] > off[1.0] > off[10.0]
     name = "Mould lifted at 10 m/s, 10 mm: D(t) from 0.1 s on, largest departure from the release at once"
     validate(name, off[10.0], below(0.003, "0"))

@@ -24,7 +24,7 @@ def lattice(spacing: float, keep, origin=(0.0, 0.0), degrees: float = 0.0, reach
     ``keep`` is asked which of them belong to the body, by their two coordinates along the turned axes.
     """
     count = math.ceil(reach / spacing)
-    a, b = ((np.indices((2 * count, 2 * count)).reshape(2, -1) - count + 0.5) * spacing)
+    a, b = (np.indices((2 * count, 2 * count)).reshape(2, -1) - count + 0.5) * spacing
     inside = keep(a, b)
     along, normal = axes(degrees)
     places = np.asarray(origin) + a[inside, None] * along + b[inside, None] * normal
@@ -42,3 +42,16 @@ def filled(case: dict, sample: Sample) -> mpmkit.Simulation:
         mock.patch.object(scene, "_refuse_overlaps", lambda _: None),
     ):
         return mpmkit.Simulation(parsed)
+
+
+def put_under_weight(simulation: mpmkit.Simulation, level: float, gravity: float = 9.81) -> None:
+    """Give a fluid at rest below a level, m, of the case's last axis the pressure of its weight.
+
+    Positions stay as they are; J = 1 - g depth/c².
+    """
+    p = simulation.particles
+    (group,) = p.groups
+    height = p.position[:, -1] + simulation.grid.lower[-1]
+    p.volume_ratio[:] = 1 - gravity * np.maximum(level - height, 0.0) / group.sound_speed**2
+    p.volume[:] = p.volume_ratio * p.initial_volume
+    p.pressure[:] = group.pressure(p.volume_ratio)
