@@ -174,7 +174,7 @@ def test_a_plane_on_the_nodes_is_a_face(contact, face, rounding, order):
 
 
 def test_contact_is_held_until_it_is_decided_anew():
-    """A node in contact keeps the wall's normal velocity in mapping, though it would leave: no sweep undoes it."""
+    """A node in contact keeps the wall's normal velocity in mapping, though it would leave; no sweep frees it."""
     simulation = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], "slip")}, scheme={"order": "usl"})
     advance(simulation, 2)
     one = simulation.operations.walls.walls[0]
@@ -244,8 +244,8 @@ def test_push_adds_no_kinetic_energy(whole, degrees):
             nodes[:, 1 : 1 + dim] = random.standard_normal((count, dim))
             before = (nodes[:, :1] * nodes[:, 1 : 1 + dim] ** 2).sum()
             acting = kernels.at_wall_velocities(
-                nodes, near.at_wall, near.at, near.d, near.normal, near.index, near.weight, near.free, near.acting,
-                near.share, near.stiffness, near.velocity, near.inner,
+                nodes, near.at_wall, near.at, near.d, near.normal, near.index, near.weight, near.free,
+                near.acting, near.share, near.stiffness, near.velocity, near.inner,
             )  # fmt: skip
             assert acting > 4
             at_wall = near.velocity[:acting].copy()
@@ -335,7 +335,7 @@ def test_history_without_walls_has_none(tmp_path):
 
 
 def test_a_plate_that_drags_a_fluid_creates_no_energy():
-    """The guard counts the work of the wall; what is left over is what the scheme itself creates, at most none."""
+    """The guard counts the work of the wall; what is left is what the scheme creates, at most none."""
     drag = {"kind": "velocity", "velocity": [1.0, 0.0]}
     simulation = simulated(
         {

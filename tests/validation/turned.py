@@ -38,8 +38,8 @@ def filled(case: dict, sample: Sample) -> mpmkit.Simulation:
     body = {"shape": {"kind": "box", "lower": list(lower), "upper": list(upper)}, **case["bodies"][0]}
     parsed = mpmkit.parse_case({"space": "plane-strain", **case, "bodies": [body]})
     with (
-        mock.patch.object(scene, "_sample_body", lambda *_: sample),
-        mock.patch.object(scene, "_refuse_overlaps", lambda _: None),
+        mock.patch.object(scene, "_sample_body", return_value=sample),
+        mock.patch.object(scene, "_refuse_overlaps"),
     ):
         return mpmkit.Simulation(parsed)
 
