@@ -159,9 +159,10 @@ class Wall:
         audit.call_contact(self.contact, nodes, dt)
         w.remember(acting, nodes.memory)
         impulse = np.zeros((count, self.grid.dim))
+        pulls = self.pulls or dt is None  # until the next decision, what is in contact is held
         wall_contact.push(
             w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
-            nodes.velocity, self.odd, self.pulls, SWEEPS, dt is not None, impulse,
+            nodes.velocity, self.odd, pulls, SWEEPS, dt is not None, impulse,
         )  # fmt: skip
         self._add_up(impulse, acting, sums)
 

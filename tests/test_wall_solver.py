@@ -1,0 +1,355 @@
+"""Walls in the solver: what they do to nodes and particles, to the bit where it is exact."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import numba
+import numpy as np
+import pytest
+import xarray
+
+import mpmkit
+from mpmkit.kernels import walls as kernels
+from mpmkit.solver.simulation import Simulation
+
+CELL = 0.05
+FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 5.0, "sound_speed": 15.0}
+CONCRETE = {
+    "law": "bingham-evp",
+    "density": 2000.0,
+    "yield_stress": 50.0,
+    "plastic_viscosity": 20.0,
+    "sound_speed": 15.0,
+}
+
+
+def wall(point, normal, contact="slip", **more):
+    return {"surface": {"kind": "plane", "point": point, "normal": normal, **more}, "contact": contact}
+
+
+def scene(walls, material=FLUID, velocity=(0.0, 0.0), lower=(0.2, 0.2), upper=(0.5, 0.4), faces=None, **more):
+    """A block in plane strain."""
+    case = {
+        "space": "plane-strain",
+        "until": 1.0,
+        "grid": {
+            "cell_size": CELL,
+            "domain": {"x": [-0.5, 1.0], "z": [-0.5, 1.0]},
+            "faces": faces or {},
+        },
+        "walls": walls,
+        "bodies": [
+            {
+                "shape": {"kind": "box", "lower": list(lower), "upper": list(upper)},
+                "material": material,
+                "velocity": list(velocity),
+            }
+        ],
+    }
+    return copy.deepcopy(case | more)
+
+
+def simulated(*arguments, **more):
+    return Simulation(mpmkit.parse_case(scene(*arguments, **more)))
+
+
+def advance(simulation, steps):
+    for _ in range(steps):
+        simulation.advance()
+    return simulation
+
+
+UP = {"kind": "velocity", "velocity": [0.1, 0.4]}
+SLOPE = wall([0.2, 0.16], [-0.1, 1.0], {"kind": "coulomb", "coefficient": 0.3}, motion=UP)
+
+
+# --- The same bits ------------------------------------------------------------------------------------------
+
+
+def assert_same(a, b):
+    left, right = a.state(), b.state()
+    assert left.keys() == right.keys()
+    for name, array in left.items():
+        np.testing.assert_array_equal(array, right[name], err_msg=name)
+
+
+@pytest.mark.parametrize("contact", ["slip", "stick", {"kind": "coulomb", "coefficient": 0.3}], ids=str)
+def test_same_bits_with_any_number_of_threads(contact):
+    found = []
+    for threads in (1, 2):
+        numba.set_num_threads(threads)
+        found.append(advance(simulated({"slope": {**SLOPE, "contact": contact}}, CONCRETE), 60))
+    assert_same(*found)
+    assert found[0].wall_sums().any()
+
+
+@pytest.mark.parametrize("order", ["usl", "usf", "musl"])
+@pytest.mark.parametrize("stop", [17, 40, 63])
+def test_same_bits_after_a_stop(order, stop):
+    """The wall moves by several cells, and is looked for anew in between."""
+    fast = {**SLOPE, "surface": {**SLOPE["surface"], "motion": {"kind": "velocity", "velocity": [0, 2.0]}}}
+    data = scene({"slope": fast}, CONCRETE, scheme={"order": order})
+    whole = advance(Simulation(mpmkit.parse_case(data)), stop)
+    again = Simulation(mpmkit.parse_case(data))
+    again.restore({name: array.copy() for name, array in whole.state().items()})
+    assert_same(again, whole)
+    advance(again, 45)
+    assert_same(again, advance(whole, 45))
+    assert whole.time * 2.0 > 1.5 * CELL
+
+
+# --- A wall that comes and goes -----------------------------------------------------------------------------
+
+
+def floor(**more):
+    return wall([0.0, 0.19], [0.0, 1.0], "slip", **more)
+
+
+def impulses(walls, until, **more):
+    """Time, s, and the vertical impulse of the wall so far, N s, step by step."""
+    simulation = simulated(walls, **more)
+    rows = []
+    while simulation.time < until:
+        simulation.advance()
+        rows.append((simulation.time, simulation.wall_sums()[0, 1]))
+    return simulation, np.array(rows)
+
+
+def test_a_wall_that_vanishes_pushes_no_more():
+    simulation, rows = impulses({"floor": floor(vanishes=0.12)}, 0.2)
+    time, impulse = rows.T
+    gone = time > 0.12 + 2 * simulation.time_step
+    assert impulse[~gone].max() > 0
+    assert np.ptp(impulse[gone]) == 0.0
+    p, left = simulation.particles, 0.2 - 0.12
+    assert p.position[:, 1].min() + simulation.grid.lower[1] < 0.19 - 0.4 * 9.81 * left**2 / 2  # it falls
+
+
+def test_a_wall_that_appears_pushes_from_then_on():
+    """What it finds behind its surface is put to it."""
+    simulation, rows = impulses({"floor": floor(appears=0.06)}, 0.2)
+    time, impulse = rows.T
+    there = time > 0.06 + simulation.time_step
+    assert not impulse[time < 0.06].any()
+    assert impulse[there].max() > 0
+    assert simulation.particles.position[:, 1].min() + simulation.grid.lower[1] > 0.19 - 0.1 * CELL
+
+
+# --- A wall on the nodes ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("order", ["usl", "usf", "musl"])
+@pytest.mark.parametrize(
+    ("contact", "face", "rounding"),
+    [
+        ("stick", "stick", 1e-7),
+        ("slip", {"kind": "friction", "coefficient": 0.0}, 1e-7),  # a face with slip holds what would leave
+        ({"kind": "coulomb", "coefficient": 0.3}, {"kind": "friction", "coefficient": 0.3}, 2e-3),
+    ],
+    ids=["stick", "slip", "coulomb"],
+)
+def test_a_plane_on_the_nodes_is_a_face(contact, face, rounding, order):
+    """A column sags and slides alike on both: to rounding, which nodes with next to no mass magnify.
+
+    Only the drag of a wall counts what is mirrored beyond it: the face of the grid does not.
+    """
+    alike = {"gravity": [3.0, -9.81], "scheme": {"order": order, "redistribution": "none"}}
+    as_wall = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], contact)}, **alike)
+    grid = {"cell_size": CELL, "domain": {"x": [-0.5, 1.0], "z": [0.2, 1.0]}, "faces": {"z_min": face}}
+    as_face = simulated({}, **alike, grid=grid)
+    for _ in range(60):
+        as_face.advance()
+        as_wall.advance(as_face.time - as_wall.time)
+    assert as_wall.time == pytest.approx(as_face.time, rel=1e-12)
+    a, b = as_wall.particles, as_face.particles
+    rows = np.argsort(a.number), np.argsort(b.number)
+    fastest = np.abs(b.velocity).max()
+    np.testing.assert_allclose(a.velocity[rows[0]], b.velocity[rows[1]], rtol=0, atol=rounding * fastest)
+    places = [
+        s.particles.position[row] + s.grid.lower for s, row in zip((as_wall, as_face), rows, strict=True)
+    ]
+    np.testing.assert_allclose(*places, rtol=0, atol=rounding * CELL)
+
+
+def test_contact_is_held_until_it_is_decided_anew():
+    """A node in contact keeps the wall's normal velocity in mapping, though it would leave; no sweep frees it."""
+    simulation = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], "slip")}, scheme={"order": "usl"})
+    advance(simulation, 2)
+    one = simulation.operations.walls.walls[0]
+    near, nodes = one.near, simulation.operations.window.nodes
+    held = near.at[near.at_wall][near.memory["contact"][near.at[near.at_wall]] == 1]
+    assert len(held) > 4
+    nodes[held, 2] = 0.3
+    one.act(False, None)
+    np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
+
+
+# --- Kernels ------------------------------------------------------------------------------------------------
+
+
+def laid(contact="stick", degrees=25.0, space="plane-strain"):
+    """A wall in the middle of particles, which has yet to appear: nodes at it, ghosts, and their images."""
+    normal = [-math.sin(math.radians(degrees)), math.cos(math.radians(degrees))]
+    data = scene({"wall": wall([0.3, 0.3], normal, contact, appears=0.5)}, lower=(0.0, 0.0), upper=(0.6, 0.6))
+    if space == "3d":
+        data |= {"space": "3d"}
+        data["grid"]["domain"] = {a: [-0.2, 0.5] for a in "xyz"}
+        data["walls"]["wall"]["surface"] |= {"point": [0.12, 0.12, 0.21], "normal": [-0.2, 0.3, 1.0]}
+        data["bodies"][0]["shape"] |= {"lower": [0.0, 0.0, 0.1], "upper": [0.25, 0.25, 0.35]}
+        data["bodies"][0]["velocity"] = [0, 0, 0]
+    simulation = advance(Simulation(mpmkit.parse_case(data)), 1)
+    return simulation, simulation.operations.walls.walls[0].near
+
+
+@pytest.mark.parametrize("odd", [False, True])
+@pytest.mark.parametrize("space", ["plane-strain", "3d"])
+def test_fold_and_fill_are_transposes(odd, space):
+    """Σ fold(a)·b = Σ a·fill(b) of momenta a and velocities b at any nodes, with a wall at rest."""
+    simulation, near = laid(space=space)
+    dim, random = simulation.grid.dim, np.random.default_rng(3)
+    count = len(near.active)
+    near.touched[:] = 1
+    rest = np.zeros((len(near.at), dim))
+    a = np.zeros((count, 1 + 2 * dim))
+    a[:, 0], a[:, 1:] = random.random(count), random.standard_normal((count, 2 * dim))
+    b = np.zeros((count, 1 + 2 * dim))
+    b[:, 1:] = random.standard_normal((count, 2 * dim))
+    folded, filled = a.copy(), b.copy()
+    where = (near.ghosts, near.at, near.normal, rest, near.index, near.weight, near.touched, odd)
+    kernels.fold(folded, *where, True, True, near.held)
+    kernels.fill(filled, *where, True, 0.1, near.held, near.impulse)
+    usable = near.ghosts[near.weight[near.ghosts, 0] >= 0]
+    assert len(usable) > 4
+    assert not folded[near.at[usable]].any()
+    assert folded[:, 0].sum() == pytest.approx(a[:, 0].sum(), rel=1e-13)  # no mass is lost
+    for part in (slice(1, 1 + dim), slice(1 + dim, None)):  # momentum with velocity, force with its change
+        assert (folded[:, part] * b[:, part]).sum() == pytest.approx(
+            (a[:, part] * filled[:, part]).sum(), rel=1e-12, abs=1e-11
+        )
+
+
+@pytest.mark.parametrize("whole", [False, True])
+@pytest.mark.parametrize("degrees", [0.0, 25.0, 45.0])
+def test_push_adds_no_kinetic_energy(whole, degrees):
+    """Of nodes against a wall at rest, whatever they do, however many sweeps there are."""
+    simulation, near = laid(degrees=degrees)
+    dim, random = simulation.grid.dim, np.random.default_rng(5)
+    count = len(near.active)
+    for sweeps in (0, 1, 3, 30):
+        for _ in range(20):
+            nodes = np.zeros((count, 1 + 2 * dim))
+            nodes[:, 0] = np.where(near.active, random.random(count), 0.0)
+            nodes[:, 1 : 1 + dim] = random.standard_normal((count, dim))
+            before = (nodes[:, :1] * nodes[:, 1 : 1 + dim] ** 2).sum()
+            acting = kernels.at_wall_velocities(
+                nodes, near.at_wall, near.at, near.d, near.normal, near.index, near.weight, near.free,
+                near.acting, near.share, near.stiffness, near.velocity, near.inner,
+            )  # fmt: skip
+            assert acting > 4
+            at_wall = near.velocity[:acting].copy()
+            after = np.zeros_like(at_wall)
+            if not whole:  # what approaches is stopped, what leaves and what slides is left
+                n = near.normal[near.acting[:acting]]
+                after = at_wall - np.minimum((at_wall * n).sum(axis=1), 0.0)[:, None] * n
+            impulse = np.zeros((acting, dim))
+            kernels.push(
+                nodes, near.acting[:acting], near.at, near.normal, near.index, near.free, near.share,
+                near.stiffness, at_wall, after, whole, whole, sweeps, False, impulse,
+            )  # fmt: skip
+            assert (nodes[:, :1] * nodes[:, 1 : 1 + dim] ** 2).sum() <= before * (1 + 1e-12)
+            if not whole:
+                n = near.normal[near.acting[:acting]]
+                assert (impulse * n).sum(axis=1).min() >= -1e-12  # it pushes and does not pull
+
+
+@pytest.mark.parametrize("degrees", [0.0, 25.0, 70.0])
+def test_particles_in_a_wall_are_put_to_its_surface(degrees):
+    """Along the normal; the others stay."""
+    simulation, near = laid(degrees=degrees)
+    normal = np.array([-math.sin(math.radians(degrees)), math.cos(math.radians(degrees))])
+    foot = np.array([0.3, 0.3]) - simulation.grid.lower
+    random = np.random.default_rng(7)
+    across = np.array([normal[1], -normal[0]])
+    depth, along = random.uniform(-0.9, 0.9, 40) * CELL, random.uniform(-0.2, 0.2, 40)
+    places = foot + depth[:, None] * normal + along[:, None] * across
+    before = places.copy()
+    moved = kernels.keep_out(places, CELL, near.lower, near.strides, near.dense)
+    assert moved == (depth < 0).sum() > 3
+    np.testing.assert_allclose((places - foot) @ normal, np.maximum(depth, 0.0), rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(places[depth >= 0], before[depth >= 0])
+    np.testing.assert_allclose(places @ across, before @ across, rtol=0, atol=1e-12)
+
+
+# --- History ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("space", ["plane-strain", "3d"])
+def test_history_of_walls(tmp_path, space):
+    """Force, torque and power of each wall, means over the time since the last row."""
+    slope = {**SLOPE, "contact": "stick"}
+    data = scene({"slope": slope, "lid": wall([0, 0.9], [0, -1.0])}, velocity=(0.0, -1.0))
+    if space == "3d":
+        data["space"] = "3d"
+        data["grid"]["domain"] = {a: [-0.2, 0.8] for a in "xyz"}
+        data["walls"]["slope"]["surface"] = {"kind": "plane", "point": [0, 0, 0.15], "normal": [0.1, 0, 1.0]}
+        data["walls"]["lid"]["surface"] |= {"point": [0, 0, 0.7], "normal": [0, 0, -1.0]}
+        data["bodies"][0] |= {"velocity": [0, 0, -1.0]}
+        data["bodies"][0]["shape"] = {"kind": "box", "lower": [0, 0, 0.2], "upper": [0.2, 0.2, 0.3]}
+    data |= {"until": 0.1, "output": {"history_interval": 0.02, "report": False}}
+    mpmkit.run(mpmkit.parse_case(data), tmp_path / "run")
+    with xarray.open_dataset(tmp_path / "run" / "history.nc") as history:
+        history.load()
+    axes = ("x", "z") if space != "3d" else ("x", "y", "z")
+    assert list(history["wall"].values) == ["slope", "lid"]
+    force, torque, power = (history[f"wall_{name}"] for name in ("force", "torque", "power"))
+    assert (force.dims, force.attrs["units"]) == (("time", "wall", "component"), "N")
+    assert torque.dims == ("time", "wall", "about")
+    assert torque.attrs["units"] == "N m"
+    assert (power.dims, power.attrs["units"]) == (("time", "wall"), "W")
+    assert list(history["component"].values) == list(axes)
+    assert list(history["about"].values) == (["y"] if space != "3d" else list(axes))
+    for variable in (force, torque, power, history["wall"]):
+        assert variable.attrs["long_name"]
+    assert not force.sel(wall="lid").any()  # far away
+    assert float(force.sel(wall="slope", component="z").max()) > 0
+    assert (force.isel(time=0) == 0).all()
+    whole = Simulation(mpmkit.parse_case(data))
+    while whole.time < 0.1 * (1 - 1e-12):
+        whole.advance(0.1 - whole.time)
+    means = force.sel(wall="slope").values[1:] * np.diff(history["time"].values)[:, None]
+    np.testing.assert_allclose(means.sum(axis=0), whole.wall_sums()[0, : len(axes)], rtol=0.02, atol=1e-3)
+
+
+def test_history_without_walls_has_none(tmp_path):
+    data = scene({}) | {"until": 0.01, "output": {"report": False}}
+    del data["walls"]
+    mpmkit.run(mpmkit.parse_case(data), tmp_path / "run")
+    with xarray.open_dataset(tmp_path / "run" / "history.nc") as history:
+        assert not [name for name in history.variables if str(name).startswith("wall_force")]
+        assert "wall" not in history.dims
+
+
+# --- Energy -------------------------------------------------------------------------------------------------
+
+
+def test_a_plate_that_drags_a_fluid_creates_no_energy():
+    """The guard counts the work of the wall; what is left is what the scheme creates, at most none."""
+    drag = {"kind": "velocity", "velocity": [1.0, 0.0]}
+    simulation = simulated(
+        {
+            "plate": wall([0.0, 0.39], [0.0, -1.0], "stick", motion=drag),
+            "floor": wall([0.0, 0.21], [0.0, 1.0], "stick"),
+        },
+        lower=(0.0, 0.21),
+        upper=(0.4, 0.39),
+        gravity=[0, 0],
+        material={**FLUID, "viscosity": 50.0},
+    )
+    while simulation.time < 0.2:
+        simulation.advance()
+    simulation.guards.check()
+    balance = simulation.guards.balance
+    assert simulation.walls_work > 0.1
+    assert balance.created <= 1e-9 * simulation.walls_work
