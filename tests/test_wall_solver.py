@@ -11,7 +11,7 @@ import pytest
 import xarray
 
 import mpmkit
-from mpmkit.kernels import walls as kernels
+from mpmkit.kernels import ghosts, wall_contact, wall_reach
 from mpmkit.solver.simulation import Simulation
 
 CELL = 0.05
@@ -174,7 +174,7 @@ def test_a_plane_on_the_nodes_is_a_face(contact, face, rounding, order):
 
 
 def test_contact_is_held_until_it_is_decided_anew():
-    """A node in contact keeps the wall's normal velocity in mapping, though it would leave; no sweep frees it."""
+    """A node in contact keeps the velocity of the wall in mapping, though it would leave; no sweep frees it."""
     simulation = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], "slip")}, scheme={"order": "usl"})
     advance(simulation, 2)
     one = simulation.operations.walls.walls[0]
@@ -218,8 +218,8 @@ def test_fold_and_fill_are_transposes(odd, space):
     b[:, 1:] = random.standard_normal((count, 2 * dim))
     folded, filled = a.copy(), b.copy()
     where = (near.ghosts, near.at, near.normal, rest, near.index, near.weight, near.touched, odd)
-    kernels.fold(folded, *where, True, True, near.held)
-    kernels.fill(filled, *where, True, 0.1, near.held, near.impulse)
+    ghosts.fold(folded, *where, True, True, near.held)
+    ghosts.fill(filled, *where, True, 0.1, near.held, near.impulse)
     usable = near.ghosts[near.weight[near.ghosts, 0] >= 0]
     assert len(usable) > 4
     assert not folded[near.at[usable]].any()
@@ -243,7 +243,7 @@ def test_push_adds_no_kinetic_energy(whole, degrees):
             nodes[:, 0] = np.where(near.active, random.random(count), 0.0)
             nodes[:, 1 : 1 + dim] = random.standard_normal((count, dim))
             before = (nodes[:, :1] * nodes[:, 1 : 1 + dim] ** 2).sum()
-            acting = kernels.at_wall_velocities(
+            acting = wall_contact.at_wall_velocities(
                 nodes, near.at_wall, near.at, near.d, near.normal, near.index, near.weight, near.free,
                 near.acting, near.share, near.stiffness, near.velocity, near.inner,
             )  # fmt: skip
@@ -254,7 +254,7 @@ def test_push_adds_no_kinetic_energy(whole, degrees):
                 n = near.normal[near.acting[:acting]]
                 after = at_wall - np.minimum((at_wall * n).sum(axis=1), 0.0)[:, None] * n
             impulse = np.zeros((acting, dim))
-            kernels.push(
+            wall_contact.push(
                 nodes, near.acting[:acting], near.at, near.normal, near.index, near.free, near.share,
                 near.stiffness, at_wall, after, whole, whole, sweeps, False, impulse,
             )  # fmt: skip
@@ -275,7 +275,7 @@ def test_particles_in_a_wall_are_put_to_its_surface(degrees):
     depth, along = random.uniform(-0.9, 0.9, 40) * CELL, random.uniform(-0.2, 0.2, 40)
     places = foot + depth[:, None] * normal + along[:, None] * across
     before = places.copy()
-    moved = kernels.keep_out(places, CELL, near.lower, near.strides, near.dense)
+    moved = wall_reach.keep_out(places, CELL, near.lower, near.strides, near.dense)
     assert moved == (depth < 0).sum() > 3
     np.testing.assert_allclose((places - foot) @ normal, np.maximum(depth, 0.0), rtol=0, atol=1e-12)
     np.testing.assert_array_equal(places[depth >= 0], before[depth >= 0])
