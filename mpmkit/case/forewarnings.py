@@ -125,7 +125,7 @@ def _swings_off(case: Case) -> Iterator[str]:
         fluid = body.material.constitutive_law.uses_equation_of_state
         if body.velocity is None or isinstance(body.velocity, list) or (fluid and case.gravity_vector.any()):
             continue
-        for axis in np.flatnonzero(body.velocity.amplitude):
+        for axis in (axis for axis, size in enumerate(body.velocity.amplitude) if size):
             for upwards in (False, True):
                 side = _side(case, axis, upwards)
                 if case.grid.faces.get(side) == "slip" and _touches(case, body, axis, upwards):
