@@ -109,6 +109,21 @@ def test_a_body_that_hangs_from_a_plane_of_symmetry_is_said():
         assert said(scene(over, faces=faces | {"z_min": wall}, gravity=(0, 9.81))) == ""
 
 
+def test_what_swings_off_a_slip_wall_is_told_what_to_write():
+    """A bar that was held at a slip wall by versions before 0.8, which pulled."""
+    swings = {"velocity": {"amplitude": [0.1, 0], "wave_vector": [3.14, 0]}}
+    rubber = {"law": "neo-hookean", "density": 1000, "youngs_modulus": 1e5, "poisson_ratio": 0}
+    bar = box([0, 0], [1, 0.5]) | swings
+    faces = {"x_min": "slip", "z_min": "slip"}
+    solid = scene(bar | {"material": rubber}, faces=faces)
+    assert "bodies.0 is not held by the face x_min: it swings" in said(solid)
+    assert 'write "x_min": "symmetry" in grid.faces' in said(solid)
+    assert said(solid).count("is not held") == 1  # not of z_min, along which nothing moves
+    assert "is not held" in said(scene(bar, faces=faces, gravity=(0, 0)))
+    assert said(scene(bar, faces=faces)) == ""  # a liquid under its weight sloshes, and is pressed on
+    assert said(scene(bar | {"material": rubber}, faces={"x_min": "symmetry", "z_min": "slip"})) == ""
+
+
 def test_a_body_that_leaves_a_wall_is_said():
     leaving = box([0, 0], [0.5, 0.5]) | {"velocity": [1.0, 0]}
     assert "its velocity takes it away" in said(scene(leaving, faces={"x_min": "symmetry", "z_min": "slip"}))

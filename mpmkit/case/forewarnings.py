@@ -31,7 +31,7 @@ NOTICED = 0.1
 
 def forewarnings(case: Case) -> list[str]:
     """A sentence for each thing that the scene is known to do wrong, and each value that cannot be meant."""
-    kinds = (_falls_out, _hangs, _touching, _few_particles, _needless, implausible)
+    kinds = (_falls_out, _hangs, _swings_off, _touching, _few_particles, _needless, implausible)
     with np.errstate(all="ignore"):  # a case may have numbers whose products are beyond any
         return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
 
@@ -121,6 +121,23 @@ def _hangs(case: Case) -> Iterator[str]:
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
                         f'"{face}" face does not let go of what is at it; "slip" does'
+                    )
+
+
+def _swings_off(case: Case) -> Iterator[str]:
+    """Bodies that a standing wave draws from a slip wall, which does not pull, and no weight keeps on it."""
+    for number, body in enumerate(case.bodies):
+        fluid = body.material.constitutive_law.uses_equation_of_state
+        if body.velocity is None or isinstance(body.velocity, list) or (fluid and case.gravity_vector.any()):
+            continue
+        for axis in (axis for axis, size in enumerate(body.velocity.amplitude) if size):
+            for upwards in (False, True):
+                side = _side(case, axis, upwards)
+                if case.grid.faces.get(side) == "slip" and _touches(case, body, axis, upwards):
+                    yield (
+                        f'bodies.{number} is not held by the face {side}: it swings, and a "slip" wall '
+                        "pushes but does not pull, unlike in versions before 0.8; for a plane that holds it "
+                        f'write "{side}": "symmetry" in grid.faces'
                     )
 
 

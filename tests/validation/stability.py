@@ -28,7 +28,7 @@ def block(
         lengths = [float(cells)] * 2
     named = {f"{axis}_{side}": faces for axis in axes for side in ("min", "max") if axis != "r"}
     if lengths[-1] == 1.0:
-        named |= {"z_min": "slip", "z_max": "slip"}
+        named |= {"z_min": "symmetry", "z_max": "symmetry"}
     return mpmkit.Simulation(
         mpmkit.parse_case(
             {
@@ -73,7 +73,7 @@ def free_bar(
                 "grid": {
                     "cell_size": 1.0,
                     "domain": {"x": [0.0, 9.0], "z": [0.0, 1.0]},
-                    "faces": {"z_min": "slip", "z_max": "slip"},
+                    "faces": {"z_min": "symmetry", "z_max": "symmetry"},
                 },
                 "bodies": [
                     {

@@ -178,7 +178,7 @@ def test_a_domain_that_does_not_begin_at_the_axis_is_refused():
 
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 def test_a_cylinder_breathes_with_its_own_period(validate, order):
-    """First radial mode of a long elastic cylinder between slip faces, plane strain.
+    """First radial mode of a long elastic cylinder between planes of symmetry, plane strain.
 
     u = J1(k r) with k R J0(k R) = (1 - 2 nu)/(1 - nu) J1(k R): k R = 2.0488 at nu = 0.3 (1.8412 at nu = 0).
     """
@@ -194,7 +194,7 @@ def test_a_cylinder_breathes_with_its_own_period(validate, order):
             "grid": {
                 "cell_size": 0.02,
                 "domain": {"r": [0.0, 0.5], "z": [0.0, 0.06]},
-                "faces": {"z_min": "slip", "z_max": "slip"},
+                "faces": {"z_min": "symmetry", "z_max": "symmetry"},
             },
             "bodies": [
                 {"shape": {"kind": "box", "lower": [0.0, 0.0], "upper": [radius, 0.06]}, "material": RUBBER}

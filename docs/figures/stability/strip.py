@@ -41,7 +41,7 @@ def strip(count: int, scheme: dict, speed: float, longest: float) -> mpmkit.Simu
             "grid": {
                 "cell_size": 1.0,
                 "domain": {"x": [0, int(CELLS * longest) + 6], "z": [0, 1]},
-                "faces": {"x_min": "slip", "z_min": "slip", "z_max": "slip"},
+                "faces": {"x_min": "symmetry", "z_min": "symmetry", "z_max": "symmetry"},
             },
             "bodies": bodies,
             "scheme": {"order": "usf", "velocity": "flip", "redistribution": "none", **scheme},
