@@ -197,7 +197,7 @@ MOULDED = {
 
 @pytest.mark.parametrize("steps", [37, 5 * CONTROL_INTERVAL])
 def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
-    """A mould that is lifted off, and a plane: where they are, what they gave, what their contacts remember."""
+    """A mould that is lifted off, and a plane: their places, what they gave, what contacts remember."""
     changes = [*FLOWING, f"walls={json.dumps(MOULDED)}"]
     case = load_case(CASES / "slump_fast.json", changes)
     simulation, recorder, watch = a_run(case, tmp_path)

@@ -36,8 +36,9 @@ class ContactNodes:
     touched: np.ndarray
     """``(k,)``, bool: whether material has reached the wall there. Elsewhere the velocity must be left."""
     pressed: np.ndarray
-    """``(k,)``, m/s, at least 0: push that the wall has given there already, over the mass. It comes from what
-    the mirrored scene beyond the wall does, and a drag may count on it as on the push of the contact itself."""
+    """``(k,)``, m/s: push over the mass that the wall gives there beside that of the contact itself, by what the
+    mirrored scene beyond the wall does, and since neighbours push the same nodes; negative where these take
+    from it. A drag may count on the sum, where it is above 0."""
     memory: dict[str, np.ndarray] = field(default_factory=dict)
     """``(k,)`` each: what the contact declares, kept with the node from step to step."""
 
