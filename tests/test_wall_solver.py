@@ -174,7 +174,7 @@ def test_a_plane_on_the_nodes_is_a_face(contact, face, rounding, order):
 
 
 def test_contact_is_held_until_it_is_decided_anew():
-    """A node in contact keeps the velocity of the wall in mapping, though it would leave; no sweep frees it."""
+    """A node in contact keeps the normal velocity of the wall, though it would leave; no sweep frees it."""
     simulation = simulated({"floor": wall([0.0, 0.2], [0.0, 1.0], "slip")}, scheme={"order": "usl"})
     advance(simulation, 2)
     one = simulation.operations.walls.walls[0]

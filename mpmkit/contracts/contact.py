@@ -36,8 +36,9 @@ class ContactNodes:
     touched: np.ndarray
     """``(k,)``, bool: whether material has reached the wall there. Elsewhere the velocity must be left."""
     pressed: np.ndarray
-    """``(k,)``, m/s, at least 0: a push that the wall gives there beside that of the contact, over the mass.
-    It comes from what is mirrored beyond the wall; a drag counts both."""
+    """``(k,)``, m/s: a push beside that of the contact itself, over the mass, for a contact that
+    ``counts_push``. It comes from what is mirrored beyond the wall, and since neighbours push the same nodes; it
+    is negative where these take from it. A drag may count on the sum, where it is above 0."""
     memory: dict[str, np.ndarray] = field(default_factory=dict)
     """``(k,)`` each: what the contact declares, kept with the node from step to step."""
 
@@ -79,6 +80,8 @@ class Contact(Plugin):
     ``odd`` all of it, as for material that sticks."""
     pulls: ClassVar[bool] = False
     """Whether it may hold material that would leave."""
+    counts_push: ClassVar[bool] = False
+    """Whether it reads ``pressed`` of its nodes, as a drag in proportion to the push does; zero otherwise."""
     memory: ClassVar[Mapping[str, StateVariable]] = {}
     """What it keeps at each node, a number each; nodes begin with ``initial``."""
 

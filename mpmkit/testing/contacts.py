@@ -45,7 +45,7 @@ def nodes_of(contact: Contact, dim: int, seed: int = 0) -> ContactNodes:
         inner=inner,
         depth=10 ** rng.uniform(-4, -1, K),
         touched=rng.uniform(size=K) < 0.7,
-        pressed=np.maximum(rng.uniform(-0.5, 0.5, K), 0.0),
+        pressed=rng.uniform(-0.5, 0.5, K),
         memory=initial_memory(contact, K),
     )
     audit.call_contact(contact, nodes, DT)

@@ -158,13 +158,43 @@ class Wall:
             audit.rehearse_contact(self.contact, nodes, dt)
         audit.call_contact(self.contact, nodes, dt)
         w.remember(acting, nodes.memory)
-        impulse = np.zeros((count, self.grid.dim))
-        pulls = self.pulls or dt is None  # until the next decision, what is in contact is held
-        wall_contact.push(
-            w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
-            nodes.velocity, self.odd, pulls, SWEEPS, dt is not None, impulse,
-        )  # fmt: skip
+        impulse = self._push(acting, before, nodes.velocity, dt is not None)
         self._add_up(impulse, acting, sums)
+
+    def _push(self, acting: np.ndarray, before: np.ndarray, after: np.ndarray, solved: bool) -> np.ndarray:
+        """Bring the velocities at the wall from ``before`` to ``after``; the impulses, N s, ``(k, dim)``."""
+        w, impulse = self.near, np.zeros_like(before)
+        pulls = self.pulls or not solved  # until the next decision, what is in contact is held
+        wall_contact.push(
+            w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before, after,
+            self.odd, pulls, SWEEPS, solved, impulse,
+        )  # fmt: skip
+        return impulse
+
+    def _shared(self, acting: np.ndarray, velocity: np.ndarray, touched: np.ndarray) -> np.ndarray:
+        """What neighbours add to the push of each place by itself, N s, ``(k,)``: they push the same nodes.
+
+        It is tried out: the nodes are as they were afterwards.
+        """
+        w, normal = self.near, self.near.normal[acting]
+        rows = np.unique(np.concatenate([w.at[acting], w.index[acting].ravel()]))
+        nodes = w.window.nodes
+        kept = nodes[rows]
+        away = np.where(
+            touched, np.minimum(((velocity - w.wall_velocity[acting]) * normal).sum(axis=1), 0.0), 0.0
+        )
+        impulse = self._push(acting, velocity, velocity - away[:, None] * normal, True)
+        nodes[rows] = kept
+        resistance = (normal * normal * w.stiffness[: len(acting)]).sum(axis=1)
+        alone = np.divide(-away, resistance, out=np.zeros(len(acting)), where=resistance > 0)
+        return (impulse * normal).sum(axis=1) - alone
+
+    def _pressed(self, acting: np.ndarray, touched: np.ndarray, dt: float | None) -> np.ndarray:
+        """Push, N s, ``(k,)``, that comes from what is mirrored beyond the wall, and from neighbours."""
+        if dt is None or not self.contact.counts_push:
+            return np.zeros(len(acting))
+        velocity = self.near.velocity[: len(acting)]
+        return self.near.pressed(acting, dt) + self._shared(acting, velocity, touched)
 
     def _given(self, count: int, dt: float | None) -> ContactNodes:
         w = self.near
@@ -173,6 +203,7 @@ class Wall:
         resistance = (normal * normal * w.stiffness[:count]).sum(axis=1)
         mass = np.divide(1.0, resistance, out=np.zeros(count), where=resistance > 0)
         at = w.at[acting]
+        touched = w.touched[at] > 0
         return ContactNodes(
             position=w.place[acting],
             normal=normal,
@@ -181,8 +212,8 @@ class Wall:
             velocity=w.velocity[:count],
             inner=w.inner[:count],
             depth=(w.d[acting] + 1) * self.grid.cell_size,
-            pressed=np.zeros(count) if dt is None else w.pressed(acting, dt) * resistance,
-            touched=w.touched[at] > 0,
+            pressed=self._pressed(acting, touched, dt) * resistance,
+            touched=touched,
             memory={name: array[at] for name, array in w.memory.items()},
         )
 

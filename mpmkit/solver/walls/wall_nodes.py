@@ -105,9 +105,9 @@ class WallNodes:
         self.sorted = True
 
     def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
-        """Impulse along the normal that ghosts bring, N s, at nodes at the wall."""
+        """Impulse along the normal that ghosts give to nodes at the wall, N s; below 0 where they take it."""
         ghosts.press(self.ghosts, self.normal, self.foot, self.foot_weight, self.held, dt, self._pressed)
-        found = np.maximum(self._pressed[self.at[acting]], 0.0)
+        found = self._pressed[self.at[acting]]
         self._pressed[self.at] = 0.0
         return found
 
