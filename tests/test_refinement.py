@@ -341,11 +341,11 @@ def test_what_merging_takes_is_booked():
     p.portion[:] = 0.5
     p.position[:, 0] = 0.3 + 0.5 * (p.position[:, 0] - 0.3)
     p.velocity[:] = rng.standard_normal(p.velocity.shape)
-    simulation.guards.balance.update(p, 0.0, 0.0)
+    simulation.guards.balance.update(p, 0.0, 0.0, 0.0)
     created, held = simulation.guards.balance.created, kinetic_energy(p)
     simulation._refine()
     assert kinetic_energy(p) < 0.99 * held
-    simulation.guards.balance.update(p, 0.0, 0.0)
+    simulation.guards.balance.update(p, 0.0, 0.0, 0.0)
     assert simulation.guards.balance.created == pytest.approx(created, abs=1e-9 * held)
 
 

@@ -20,7 +20,7 @@ def main() -> None:
             spread = runs.spread_diameter.sel(floor=floor, lift=lift).dropna("time")
             plot.plot(spread.time, 1e3 * spread, color=color, lw=1.2, label=lift)
         plot.axhline(500, color=ORANGE, lw=0.8, ls=":")
-        plot.set(xlim=(0, 2), ylim=(190, 600))
+        plot.set(xlim=(0, 2), ylim=(190, 640))
         say(plot, title, "time from the start of the lift / s", "spread diameter / mm")
         plot.legend(frameon=False, fontsize=7, loc="lower right")
     save(sheet, "lifting")
