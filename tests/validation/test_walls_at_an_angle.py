@@ -323,8 +323,8 @@ def test_block_slides_on_a_wall_as_on_a_face(validate):
     """Wherever the wall lies between the nodes."""
     time = 0.3
     on_face = speed_on_face(time)
-    for offset in (0.0, 0.37, 0.8):
-        simulation, along, _ = block(0.0, (0.2, offset), coulomb(0.2))
+    for degrees, offset in ((0.0, 0.0), (0.0, 0.37), (0.0, 0.8), (20.0, 0.7)):
+        simulation, along, _ = block(degrees, (0.3, offset), coulomb(0.2))
         advance_to(simulation, time)
         found = -centre(simulation, "velocity") @ along / on_face
         name = "Block on an incline, friction: speed on a wall over that on a face of the grid"
