@@ -60,6 +60,21 @@ def test_what_a_floor_does(kind, parameters, velocity, after):
     assert solved(kind, velocity, parameters) == pytest.approx(after, abs=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("velocity", "pressed", "after"),
+    [
+        ([3, -2], 1.0, [1.5, 0]),  # half of 2 and of what else the wall gives
+        ([3, -2], -1.0, [2.5, 0]),  # of which neighbours, or what is mirrored, may take a part
+        ([3, -2], -5.0, [3, 0]),
+        ([3, 2], 1.0, [2.5, 2]),
+        ([3, 2], -1.0, [3, 2]),
+    ],
+)
+def test_drag_counts_all_that_the_wall_pushes_with(velocity, pressed, after):
+    found = solved("coulomb", velocity, {"coefficient": 0.5}, pressed=pressed)
+    assert found == pytest.approx(after, abs=1e-15)
+
+
 def test_along_the_normal_and_against_the_wall():
     """A leaning wall that moves: only the part of v - w along n is taken up."""
     n, t, w = np.array(LEAN), np.array([0.8, 0.6]), np.array([5.0, -1.0])

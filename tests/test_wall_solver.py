@@ -186,6 +186,24 @@ def test_contact_is_held_until_it_is_decided_anew():
     np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("offset", [0.37, 0.8])
+def test_drag_is_the_coefficient_times_the_push(offset):
+    """Of a block that slides: what is mirrored beyond the wall pushes, and pulls, as well."""
+    z = 0.1 + offset * CELL
+    simulation = simulated(
+        {"floor": wall([0.0, z], [0.0, 1.0], {"kind": "coulomb", "coefficient": 0.2})},
+        material={"law": "neo-hookean", "density": 1000.0, "youngs_modulus": 1e6, "poisson_ratio": 0.3},
+        lower=(0.2, z + 0.002),
+        upper=(0.7, z + 0.202),
+        velocity=(0.9, 0.0),
+    )
+    while simulation.time < 0.25:
+        simulation.advance()
+    drag, push = simulation.wall_sums()[0, :2]
+    assert push == pytest.approx(simulation.particles.mass.sum() * 9.81 * simulation.time, rel=0.05)
+    assert -drag / push == pytest.approx(0.2, rel=0.02)
+
+
 # --- Kernels ------------------------------------------------------------------------------------------------
 
 
