@@ -37,8 +37,8 @@ class ContactNodes:
     """``(k,)``, bool: whether material has reached the wall there. Elsewhere the velocity must be left."""
     pressed: np.ndarray
     """``(k,)``, m/s: a push beside that of the contact itself, over the mass, for a contact that
-    ``counts_push``. It comes from what is mirrored beyond the wall, and since neighbours push the same nodes; it
-    is negative where these take from it. A drag may count on the sum, where it is above 0."""
+    ``counts_push``. It comes from what is mirrored beyond the wall, and from neighbours, which push the same
+    nodes; it is below 0 where they take from it. A drag may count on the sum, where that is above 0."""
     memory: dict[str, np.ndarray] = field(default_factory=dict)
     """``(k,)`` each: what the contact declares, kept with the node from step to step."""
 
