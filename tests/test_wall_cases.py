@@ -11,7 +11,7 @@ import pytest
 
 from mpmkit.case import case_schema, load_case, parse_case
 from mpmkit.case.forewarnings import forewarnings
-from mpmkit.case.plugins import plugins_of
+from mpmkit.case.plugins import cautions, plugins_of
 from mpmkit.case.resolved import resolved
 from mpmkit.cli import main
 from mpmkit.errors import CaseError
@@ -472,3 +472,33 @@ def test_status_2(tmp_path, capsys):
     assert stop.value.code == 2
     assert capsys.readouterr().err.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("surface", "contact", "said"),
+    [
+        ({"side": "inside"}, "slip", True),
+        ({"side": "inside"}, "stick", False),
+        ({"side": "outside"}, "slip", False),
+        ({"side": "inside", "thickness": 0.1, "open": ["z_max"]}, "slip", True),
+    ],
+)
+def test_inner_edges_of_a_body_are_cautioned_against_where_material_slips(surface, contact, said):
+    shape = {"kind": "box", "lower": [0.2, 0.2], "upper": [0.8, 0.8]}
+    case = parse_case(
+        {
+            "space": "plane-strain",
+            "until": 0.1,
+            "grid": {"cell_size": 0.05, "domain": {"x": [0, 1], "z": [0, 1]}},
+            "walls": {"tub": {"surface": {"kind": "body", "shape": shape, **surface}, "contact": contact}},
+            "bodies": [
+                {
+                    "shape": {"kind": "box", "lower": [0.3, 0.85], "upper": [0.4, 0.95]}
+                    if surface["side"] == "outside"
+                    else {"kind": "box", "lower": [0.3, 0.3], "upper": [0.4, 0.4]},
+                    "material": {"law": "newtonian", "density": 1000, "viscosity": 1, "sound_speed": 10},
+                }
+            ],
+        }
+    )
+    assert any("walls.tub has inner edges" in sentence for sentence in cautions(case)) == said

@@ -1,6 +1,6 @@
 """The surface of a body, from inside or from outside, or a shell around it."""
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -74,6 +74,27 @@ class BodySurface(RigidSurface):
         if set(named) == set(ends) and self.shape.kind == "box":
             return f"open is {self.open}, which leaves no wall: one face must stay closed"
         return None
+
+    def cautions(self, case: Any) -> list[str]:
+        if self.side == "outside" or not self._has_inner_edges(case.space_):
+            return []
+        return [
+            f"walls.{name} has inner edges, and contact '{wall.contact.name}' lets material slide along them: "
+            "a node there knows only one of the faces, so that material may sink into the edge; a wall of its "
+            "own for each face holds it"
+            for name, wall in case.walls.items()
+            if wall.surface == self and wall.contact.parity == "mirror"
+        ]
+
+    def _has_inner_edges(self, space: Space) -> bool:
+        """Whether faces meet inside: those of a box or a mesh, or the bottom or top of an upright body."""
+        if self.shape.kind == "sphere":
+            return False
+        ends = self.shape.ends(space)
+        left_open = (
+            ends if self.open is None and self.shape.kind in ("cylinder", "frustum") else self.open or []
+        )
+        return self.thickness is None or self.shape.kind in ("box", "mesh") or set(left_open) != set(ends)
 
     def placed(self, space: Space) -> MovingSolid:
         if self.side == "outside":
