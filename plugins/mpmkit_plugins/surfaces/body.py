@@ -79,9 +79,9 @@ class BodySurface(RigidSurface):
         if self.side == "outside" or not self._has_inner_edges(case.space_):
             return []
         return [
-            f"walls.{name} has inner edges, and contact '{wall.contact.name}' lets material slide there: a node "
-            "knows only one of the faces, so that material may sink into the edge; a wall of its own for each "
-            "face holds it"
+            f"walls.{name} has inner edges, and contact '{wall.contact.name}' lets material slide there: "
+            "a node knows only one of the faces, so that material may sink into the edge; "
+            "a wall of its own for each face holds it"
             for name, wall in case.walls.items()
             if wall.surface == self and wall.contact.parity == "mirror"
         ]
