@@ -1,7 +1,7 @@
 """A manufactured solution: an elastic body that a body force makes move in a known way.
 
 A bar of unit period along x, periodic, of Young's modulus E, Poisson's ratio nu and density rho0, in uniaxial
-strain between slip faces, with X the position at rest and c = √(E/rho0):
+strain between planes of symmetry, with X the position at rest and c = √(E/rho0):
 
     u(X, t) = A sin(2πX) sin(2πct),   F = 1 + ∂u/∂X = 1 + 2πA cos(2πX) sin(2πct).
 
@@ -78,7 +78,12 @@ class Bar:
                     "grid": {
                         "cell_size": dx,
                         "domain": {"x": [0.0, 1.0], "z": [0.0, dx]},
-                        "faces": {"x_min": "periodic", "x_max": "periodic", "z_min": "slip", "z_max": "slip"},
+                        "faces": {
+                            "x_min": "periodic",
+                            "x_max": "periodic",
+                            "z_min": "symmetry",
+                            "z_max": "symmetry",
+                        },
                     },
                     "bodies": [
                         {
