@@ -26,7 +26,7 @@ MADE_OF_THE_CASE = {
     "Group": {"law", "equation_of_state"},
     "SceneOperations": {"scheme", "grid", "cell_size", "gravity", "radial", "_scatter", "_gather"},
     "Window": {"grid"},
-    "Sorting": {"grid", "_locate", "_periodic"},
+    "Sorting": {"grid", "_locate", "_periodic", "_walls", "_walled"},
     "ActiveNodes": {"faces"},
     "Averager": {"_scatter_pairs", "_gather_scalar"},
     "Walls": {"grid"},

@@ -73,6 +73,23 @@ def wrap(position, axis, length):
 
 
 @kernel()
+def put_back(position, axis, low, high, most):
+    """Put particles that are behind a wall at ``low`` or ``high``, by no more than ``most``, back onto it.
+
+    A wall acts on nodes, and a particle at it moves with the nodes beside as well. One that went further was
+    thrown out, and stays there to be seen.
+    """
+    n = len(position)
+    for c in prange(chunk_count(n)):
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            x = position[p, axis]
+            if low - most <= x < low:
+                position[p, axis] = low
+            elif high < x <= high + most:
+                position[p, axis] = high
+
+
+@kernel()
 def first_unsound(position, velocity, stress, pressure, volume_ratio, least, most, firsts):
     """First particle whose state is not finite or whose volume ratio is not in [least, most]; -1 without one.
 

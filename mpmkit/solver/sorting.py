@@ -11,8 +11,9 @@ from itertools import pairwise
 import numpy as np
 
 from ..kernels import sort
-from ..kernels.locate import LOST, STRAYED, locate, wrap
+from ..kernels.locate import LOST, STRAYED, locate, put_back, wrap
 from ..kernels.scatter import NODE
+from ..kernels.touch import REACH
 from .active_nodes import ActiveNodes
 from .available_memory import available_memory
 from .grid import Grid, Window
@@ -52,6 +53,9 @@ class Sorting:
         self._block_cell = np.zeros((0, grid.dim), dtype=np.int64)
         self._verdicts = np.zeros((0, 2), dtype=np.int64)
         self._periodic = [a for a in range(grid.dim) if grid.periodic[a]]
+        ends = np.stack([np.zeros(grid.dim), grid.extent], axis=1)
+        self._walls = np.where(grid.walls, ends, [-np.inf, np.inf])
+        self._walled = [a for a in range(grid.dim) if grid.walls[a].any()]
 
     def refresh(self, cells: np.ndarray, scratch: np.ndarray) -> int | None:
         """Sort and move the window if a particle has strayed. Returns a particle that is lost, if any is.
@@ -63,6 +67,8 @@ class Sorting:
         position = self.particles.position
         for axis in self._periodic:
             wrap(position, axis, self.grid.extent[axis])
+        for axis in self._walled:
+            put_back(position, axis, *self._walls[axis], REACH * self.grid.cell_size)
         if self.sorts == 0:
             return self._sort(cells, scratch)
         verdict, who = self._locate(
