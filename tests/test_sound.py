@@ -11,7 +11,6 @@ import pytest
 
 import mpmkit
 from mpmkit.case import parse_case
-from mpmkit.case.plugins import cautions
 from mpmkit.errors import CaseError
 from mpmkit.solver.energies import compressive_energy, kinetic_energy
 from mpmkit.solver.simulation import Simulation
@@ -108,17 +107,18 @@ def test_a_sound_that_follows_the_flow_creates_no_energy_at_an_impact(mach, sche
     assert 0.3 < float(p.mass @ p.velocity[:, 1] / p.mass.sum()) < 1.0  # it is on its way back
 
 
-def test_the_default_creates_little_energy_at_an_impact_and_says_where_it_creates_more():
-    """It shifts volume, place and weight at a stroke: 4.5 % are made of an inviscid fluid at Mach 0.1."""
-    simulation = Simulation(thrown({"mach": 0.1}, {}))
-    p, first, most = simulation.particles, kinetic_energy(simulation.particles), 0.0
-    assert cautions(simulation.case) == []
+@pytest.mark.parametrize(("mach", "most"), [(0.1, 1.01), (0.3, 1.05)])
+@pytest.mark.parametrize("scheme", [{}, {"velocity": "flip"}], ids=["default", "flip"])
+def test_the_default_redistribution_creates_little_energy_at_an_impact(mach, most, scheme):
+    """It counts the shear of the impact, and not the time in which the fluid flew to it without any.
+
+    With that time it made 21 % of an inviscid fluid at Mach 0.1, and with FLIP doubled it.
+    """
+    simulation = Simulation(thrown({"mach": mach}, scheme))
+    p, first = simulation.particles, kinetic_energy(simulation.particles)
     while simulation.time < 0.9:
         simulation.advance()
-        most = max(most, (kinetic_energy(p) + compressive_energy(p)) / first)
-    assert most < 1.05
-    (said,) = cautions(thrown({"mach": 0.1}, {"velocity": "flip"}))
-    assert "feeds the sound" in said
+        assert kinetic_energy(p) + compressive_energy(p) <= most * first
 
 
 def test_another_sound_speed_is_taken_at_the_same_energy_and_slowly():

@@ -88,4 +88,5 @@ class Redistribution(Plugin):
 
     @abstractmethod
     def redistribute(self, ops: Redistributing, time: float) -> None:
-        """Carry out what is due for the ``time``, s, since the last time."""
+        """Carry out what is due for the ``time``, s, in which the present shear rates make the shear that has
+        come together. In steady flow it is the time since the last redistribution."""

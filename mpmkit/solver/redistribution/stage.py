@@ -118,11 +118,20 @@ class Stage:
         self._splines = self.nodes = self._lattice(1, position, size)
         self.places = self._lattice(self._times, position, size)
         before = self._energy_of_particles()
-        author.redistribute(self, self.time)
+        author.redistribute(self, self._time_of_shear())
         self.energy += self._energy_of_particles() - before
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.time = 0.0
         return True
+
+    def _time_of_shear(self) -> float:
+        """Time, s, in which the present shear rates make the shear since the last redistribution.
+
+        It is the time since then in steady flow, and less where flow has set in at a stroke, as in an impact.
+        """
+        rates = self.shear_rate()
+        most = max((float(rates[part].max(initial=0.0)) for part in self._fluids()), default=0.0)
+        return min(self.time, self.shear / most) if most > 0 else self.time
 
     def _energy_of_particles(self) -> float:
         p = self._particles

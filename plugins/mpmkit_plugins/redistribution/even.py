@@ -3,7 +3,7 @@
 import numpy as np
 from numba import prange
 
-from mpmkit.contracts import GeneralisedNewtonianLaw, Redistributing, Redistribution, hookimpl
+from mpmkit.contracts import Redistributing, Redistribution, hookimpl
 from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 
 DUE = 0.1
@@ -20,8 +20,6 @@ STEEP, LOOSE = 0.25, 0.8
 """Change of the crowding over a cell above which, and crowding below which, a particle is at the surface."""
 LONGEST = 0.2
 """Longest shift, over the spacing of the particles."""
-THIN = 0.01
-"""Viscosity over ρ c Δx below which sound is hardly damped."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
 """Filling below which a cell is at the surface, and bounds of the filling that is divided by."""
 
@@ -45,15 +43,6 @@ class Even(Redistribution):
     )
     equal_boxes = True
 
-    def cautions(self, case) -> list[str]:
-        thin = any(_is_thin(case, body.material) for body in case.bodies)
-        if case.scheme.velocity.name != "flip" or not thin:
-            return []
-        return [
-            "redistribution 'even' feeds the sound in a fluid of hardly any viscosity, which velocity 'flip' "
-            "does not damp: after an impact its energy doubled within 0.3 s; velocity 'apic' damps it"
-        ]
-
     def is_due(self, shear: float) -> bool:
         return shear >= DUE
 
@@ -67,16 +56,6 @@ class Even(Redistribution):
         )
         ops.shift(shift)
         ops.weigh(_weights(ops))
-
-
-def _is_thin(case, material) -> bool:
-    """Whether viscosity hardly damps sound that is as short as the cells are."""
-    law, speed = material.constitutive_law, case.sound_speed(material)
-    if speed is None or not isinstance(law, GeneralisedNewtonianLaw):
-        return False
-    return (
-        law.viscosity_at(speed / case.grid.cell_size) < THIN * material.density * speed * case.grid.cell_size
-    )
 
 
 def _excess(crowding: np.ndarray, inside: np.ndarray) -> np.ndarray:
