@@ -63,7 +63,8 @@ class Redistributing(Protocol):
         """The cells of the grid, with the boxes as they are now."""
 
     def shear_rate(self) -> np.ndarray:
-        """γ̇ = √(2 D':D') of each particle, 1/s, ``(n,)``."""
+        """γ̇ = √(2 D':D') of each particle, 1/s, ``(n,)``, and at most twice the largest mean since the last
+        time: where flow sets in at a stroke, the rate of the moment is not that of all this time."""
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
         """J ← J factor, for fluids."""
@@ -88,5 +89,4 @@ class Redistribution(Plugin):
 
     @abstractmethod
     def redistribute(self, ops: Redistributing, time: float) -> None:
-        """Carry out what is due for the ``time``, s, in which the present shear rates make the shear that has
-        come together. In steady flow it is the time since the last redistribution."""
+        """Carry out what is due for the ``time``, s, since the last time."""

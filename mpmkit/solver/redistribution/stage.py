@@ -22,6 +22,9 @@ from .cells import BoxCells
 from .lattice import SplineLattice
 from .mirrored import Mirrored
 
+OVER_MEAN = 2.0
+"""Largest shear rate that counts, over the largest mean since the last redistribution: that at the end of a
+flow which has grown evenly from nothing. In an impact after a flight it would be hundreds."""
 AT_A_WALL = 1e-6
 """Distance, in cells, that a shift keeps from a wall."""
 
@@ -118,20 +121,11 @@ class Stage:
         self._splines = self.nodes = self._lattice(1, position, size)
         self.places = self._lattice(self._times, position, size)
         before = self._energy_of_particles()
-        author.redistribute(self, self._time_of_shear())
+        author.redistribute(self, self.time)
         self.energy += self._energy_of_particles() - before
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.time = 0.0
         return True
-
-    def _time_of_shear(self) -> float:
-        """Time, s, in which the present shear rates make the shear since the last redistribution.
-
-        It is the time since then in steady flow, and less where flow has set in at a stroke, as in an impact.
-        """
-        rates = self.shear_rate()
-        most = max((float(rates[part].max(initial=0.0)) for part in self._fluids()), default=0.0)
-        return min(self.time, self.shear / most) if most > 0 else self.time
 
     def _energy_of_particles(self) -> float:
         p = self._particles
@@ -164,7 +158,8 @@ class Stage:
     # --- For the redistribution
 
     def shear_rate(self) -> np.ndarray:
-        return shear_rate(self._particles.velocity_gradient)
+        rate = shear_rate(self._particles.velocity_gradient)
+        return np.minimum(rate, OVER_MEAN * self.shear / self.time) if self.time > 0 else rate
 
     def cells(self) -> contract.Cells:
         p = self._particles
