@@ -80,7 +80,7 @@ def test_the_mould_is_lifted_until_the_concrete_rests(validate, cell):
 
 @pytest.mark.slow
 def test_a_mould_lifted_ever_faster_tends_to_none(validate):
-    """At 10 m/s it is gone in 0.03 s. What that holds back, some 3 ms, is 0.7 % of the spread at 0.1 s."""
+    """At 10 m/s it is gone in 0.03 s. How far the spread is off on the way is the row of the next test."""
     time, free = slump(None, 0.01, 2.0)
     off = {speed: np.abs(slump(speed, 0.01, 2.0)[1] / free - 1) for speed in (0.3, 1.0, 10.0)}
     late = time >= 0.5 - 1e-9
@@ -88,3 +88,15 @@ def test_a_mould_lifted_ever_faster_tends_to_none(validate):
     name = "Mould lifted at 10 m/s, 10 mm: D(t) off that of the release at once"
     validate(f"{name}, from 0.5 s on", off[10.0][late].max(), below(0.003, "0"))
     validate(f"{name}, at rest", off[10.0][-1], below(0.003, "0"))
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    reason="0.7 % at worst, soon after the mould is gone: the lift holds back some 4 ms", strict=True
+)
+def test_a_mould_lifted_at_10_m_s_is_a_release_at_once_at_all_times(validate):
+    time, free = slump(None, 0.01, 2.0)
+    off = np.abs(slump(10.0, 0.01, 2.0)[1] / free - 1)[time >= 0.1 - 1e-9].max()
+    validate(
+        "Mould lifted at 10 m/s, 10 mm: D(t) off that of the release, from 0.1 s on", off, below(0.003, "0")
+    )
