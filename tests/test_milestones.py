@@ -232,3 +232,7 @@ class TestWhatIsSaid:
         assert [line for line in said if line.startswith("floor")] == (
             [] if floor is None else [f"floor: z_min is {floor}"]
         )
+
+    def test_a_mould_is_named_and_is_no_release_at_once(self):
+        said = setting(mpmkit.load_case(Path(__file__).parents[1] / "cases/slump_lifted.json"))
+        assert said[1].startswith("release: from t = 0 on the material is held by walls.mould alone")

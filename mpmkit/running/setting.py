@@ -26,7 +26,12 @@ def setting(case: Case) -> list[str]:
     if face in ("open", "periodic"):
         return []
     said = [f"floor: {name} is {_in_words(face)}"]
-    if not any(body.largest_speed for body in case.bodies):
+    if any(body.largest_speed for body in case.bodies):
+        return said
+    if case.walls:
+        names = ", ".join(f"walls.{name}" for name in case.walls)
+        said.append(f"release: from t = 0 on the material is held by {names} alone; T500 counts from t = 0")
+    else:
         said.append(
             "release: the material is free from t = 0 on, at once; a T500 measured in a laboratory also "
             "includes the time in which the cone is lifted"
