@@ -187,7 +187,7 @@ CHECKS = {
     "contact": contact_checks,
 }
 NEED_PARAMETERS = ("surface", "contact")
-"""Kinds whose plug-ins go through the kit in ``test_walls.py``."""
+"""Kinds whose plug-ins go through the kit in ``test_surfaces_and_contacts.py``."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
     ("velocity", velocity_mutants.Still, "uniform motion plane-strain"),

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 from bands import above, below, close_to
 from clock import at
+from test_faces import DX, RELEASING, SOFT, G, mean_velocity, rub, scene
 from test_hydrostatic import SETTLED, column, settle
 from test_slump import ROOT, Slump, cells
-from test_walls import DX, RELEASING, SOFT, G, mean_velocity, rub, scene
 
 import mpmkit
 from mpmkit.kernels.scatter import CONTACT
