@@ -13,6 +13,7 @@ from test_case import GOOD, MATERIAL, changed, sentence
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.synonyms import WORDS, meant
 from mpmkit.errors import CaseError
+from mpmkit.registry import Registry, installed
 
 FACE = "grid.faces.z_min"
 STICK = "no-slip, noslip, no_slip, No Slip, non-slip, no-slipp, rough, fixed, wall, sticky, closed, solid"
@@ -189,3 +190,40 @@ def test_what_is_said_to_install_is_what_the_extras_hold():
             assert said, extra
             names = " ".join(re.split(r"[><=]", requirement)[0] for requirement in requirements)
             assert all(f"pip install {names}" in text for text in said), extra
+
+
+WALLED = GOOD | {
+    "walls": {"w": {"surface": {"kind": "plane", "point": [0, 0.05], "normal": [0, 1]}, "contact": "slip"}}
+}
+WHERE = {
+    "surface": 'walls.w.surface is {"kind": "plane", "point": [0, 0.05], "normal": [0, 1]}',
+    "contact": 'walls.w.contact is "slip"',
+    "law": f"{MATERIAL} is ",
+    "equation_of_state": f"{MATERIAL}.equation_of_state is missing",
+    "shape": 'scheme.shape is "cpgimp"',
+    "velocity": "scheme.velocity is missing",
+}
+
+
+@pytest.mark.parametrize("kind", WHERE)
+def test_where_no_plugin_of_a_kind_is_installed_the_sentence_says_so(kind):
+    """Of a part that the case leaves to its defaults too. No text may stand there."""
+    others = [entry for own, found in installed().plugins.items() if own != kind for entry in found.values()]
+    registry = Registry(others, [])
+    said = sentence(parse_case, WALLED, registry=registry)
+    assert said.startswith(f"case: {WHERE[kind]}")
+    assert said.endswith(f"; it must be a plug-in of the kind '{kind}', but none is installed")
+    if kind == "contact":
+        worded = json.loads(json.dumps(WALLED))
+        worded["walls"]["w"]["contact"] = "none is installed"
+        assert "but none is installed" in sentence(parse_case, worded, registry=registry)
+
+
+def test_a_part_at_its_default_is_named_in_full():
+    case = {key: value for key, value in GOOD.items() if key != "scheme"}
+    others = [
+        e for found in installed().plugins.values() for e in found.values() if e.plugin.name != "cpgimp"
+    ]
+    assert sentence(parse_case, case, registry=Registry(others, [])) == (
+        "case: scheme.shape is missing; it must be \"linear\", or an object with such a 'name'"
+    )

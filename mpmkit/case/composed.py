@@ -9,7 +9,17 @@ from functools import lru_cache, reduce
 from operator import or_
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, create_model, model_validator
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+    create_model,
+    model_validator,
+)
+from pydantic_core import PydanticKnownError
 
 from ..contracts import ConstitutiveLaw, Plugin
 from ..registry import Registry, installed
@@ -42,8 +52,8 @@ def _unpickled(text: str, registry: Registry | None) -> Case:
     return case_model(registry or installed()).model_validate_json(text, context=_CHECKED_BEFORE)
 
 
-def _one_of(members: dict[str, type], key: str) -> Any:
-    """Annotation of a field that holds one of several models, told apart by the constant at ``key``."""
+def _one_of(kind: str, members: dict[str, type], key: str) -> Any:
+    """Annotation of a field that holds a plug-in of a kind; the constant at ``key`` says which of them."""
 
     def tag(value: Any) -> Any:
         if isinstance(value, dict):
@@ -53,21 +63,32 @@ def _one_of(members: dict[str, type], key: str) -> Any:
         return value if isinstance(value, str) else getattr(value, key, None)
 
     if not members:  # every one of them is broken or refused: only a case that is read fails of it
-        return Literal["none is installed"]
+        return _none_of(kind)
     return Annotated[
         reduce(or_, [Annotated[cls, Tag(name)] for name, cls in members.items()]), Discriminator(tag)
     ]
 
 
-def _choice(plugins: dict[str, type], default: str) -> tuple[Any, Any]:
+def _none_of(kind: str) -> Any:
+    """Annotation of a field for which no plug-in is installed: it takes no value."""
+    allowed = f"a plug-in of the kind '{kind}', but none is installed"
+
+    def refuse(value: Any) -> Any:
+        raise PydanticKnownError("literal_error", {"expected": allowed})
+
+    return Annotated[Any, BeforeValidator(refuse), WithJsonSchema({"not": {}, "allowed": allowed})]
+
+
+def _choice(registry: Registry, kind: str, default: str) -> tuple[Any, Any]:
     """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
+    plugins = registry.of_kind(kind)
     preset = Field(default=default, validate_default=True) if default in plugins else ...
-    return _one_of(plugins, "name"), preset
+    return _one_of(kind, plugins, "name"), preset
 
 
-def _named(plugins: dict[str, type]) -> tuple[Any, Any]:
+def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
     """Annotation of a field that holds a plug-in which says its name at ``kind``, and has no default."""
-    return _one_of(plugins, "kind"), ...
+    return _one_of(kind, registry.of_kind(kind), "kind"), ...
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -78,7 +99,7 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
         __base__=base,
         __doc__=law.__doc__,
         law=(Literal[law.name], ...),
-        equation_of_state=_choice(registry.of_kind("equation_of_state"), "linear"),
+        equation_of_state=_choice(registry, "equation_of_state", "linear"),
         **own_fields,  # type: ignore[call-overload]
     )
 
@@ -87,24 +108,26 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
 def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
     laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
-    body = create_model("Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of(laws, "law"), ...))
+    body = create_model(
+        "Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of("law", laws, "law"), ...)
+    )
     scheme = create_model(
         "Scheme",
         __base__=Scheme,
         __doc__=Scheme.__doc__,
-        shape=_choice(registry.of_kind("shape"), "cpgimp"),
-        order=_choice(registry.of_kind("order"), "usl"),
-        velocity=_choice(registry.of_kind("velocity"), "apic"),
-        volumetric=_choice(registry.of_kind("volumetric"), "nodal-average"),
-        redistribution=_choice(registry.of_kind("redistribution"), "even"),
-        refinement=_choice(registry.of_kind("refinement"), "none"),
+        shape=_choice(registry, "shape", "cpgimp"),
+        order=_choice(registry, "order", "usl"),
+        velocity=_choice(registry, "velocity", "apic"),
+        volumetric=_choice(registry, "volumetric", "nodal-average"),
+        redistribution=_choice(registry, "redistribution", "even"),
+        refinement=_choice(registry, "refinement", "none"),
     )
     wall = create_model(
         "Wall",
         __base__=Wall,
         __doc__=Wall.__doc__,
-        surface=_named(registry.of_kind("surface")),
-        contact=_named(registry.of_kind("contact")),
+        surface=_named(registry, "surface"),
+        contact=_named(registry, "contact"),
     )
     model = create_model(
         "Case",

@@ -68,16 +68,22 @@ def _schema(model: type[BaseModel]) -> dict:
 
 
 def _complaint(item: Any, data: Any) -> Complaint:
-    """The error, its location cleared of the tags that pydantic puts in for the members of unions."""
+    """The error, its location cleared of the tags that pydantic puts in for the members of unions.
+
+    There are no tags at the top: a first key that the data lack is that of a part which is at its default.
+    """
     loc, kind = item["loc"], item["type"]
     keys: list[str | int] = []
     here = data
-    for key in loc:
+    for depth, key in enumerate(loc[:-1] if kind == "missing" else loc):
         if (isinstance(here, dict) and key in here) or (
             isinstance(here, list) and isinstance(key, int) and key < len(here)
         ):
             keys.append(key)
             here = here[key]
+        elif depth == 0:
+            keys.append(key)
+            here = None
     if kind == "missing":
         keys.append(loc[-1])
     text = str(item["ctx"]["error"]) if "error" in item.get("ctx", {}) else item["msg"]
