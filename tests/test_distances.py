@@ -88,6 +88,41 @@ def test_the_ends_of_a_shell():
     assert BOX.ends_left_open(FLAT) == ()
 
 
+# --- Parts -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("shape", "ends", "counts"),
+    [
+        (FRUSTUM, None, (4, 3, 3)),  # a container: a plane or a cone for each face
+        (CONE, None, (3, 2, 2)),  # its tip is no face
+        (CYLINDER, None, (4, 3, 3)),
+        (FRUSTUM, ["top"], (2, 2, 2)),  # a cup: its side and its bottom
+        (FRUSTUM, [], (3, 3, 3)),
+        (FRUSTUM, ["bottom", "top"], (1, 1, 1)),
+        (CONE, ["top"], (1, 1, 1)),
+        (BOX, None, (4, 3, None)),
+        (BOX, ["x_min"], (3, None, None)),
+        (BOX_3D, None, (None, None, 6)),
+        (BOX_3D, ["z_max"], (None, None, 5)),
+    ],
+)
+def test_parts_are_together_the_wall(shape, ends, counts):
+    """φ of the whole is the least φ of its parts where material may be, and nowhere is a part in its way."""
+    for space, count in zip((FLAT, ROUND, SOLID), counts, strict=True):
+        if count is None:
+            continue
+        whole = Inverted(shape.solid(space)) if ends is None else shape.shell(space, T, ends)
+        parts = whole.parts(space.radial)
+        assert len(parts) == count
+        x = np.random.default_rng(4).uniform(-0.3, 0.4, (4000, space.dim))
+        if space.radial:
+            x[:, 0] = np.abs(x[:, 0])
+        found, least = whole.distance(x)[0], np.min([part.distance(x)[0] for part in parts], axis=0)
+        np.testing.assert_allclose(least[found > 0], found[found > 0], atol=1e-14)
+        assert (least[found < 0] < 0).all()
+
+
 # --- Against the nearest of many points -------------------------------------------------------------------
 
 

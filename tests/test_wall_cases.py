@@ -475,30 +475,36 @@ def test_status_2(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("surface", "contact", "said"),
+    ("kind", "side", "contact", "said"),
     [
-        ({"side": "inside"}, "slip", True),
-        ({"side": "inside"}, "stick", False),
-        ({"side": "outside"}, "slip", False),
-        ({"side": "inside", "thickness": 0.1, "open": ["z_max"]}, "slip", True),
+        ("mesh", "inside", "slip", True),
+        ("mesh", "inside", "stick", False),
+        ("mesh", "outside", "slip", False),
+        ("box", "inside", "slip", False),
     ],
 )
-def test_inner_edges_of_a_body_are_cautioned_against_where_material_slips(surface, contact, said):
-    shape = {"kind": "box", "lower": [0.2, 0.2], "upper": [0.8, 0.8]}
+def test_inner_edges_of_a_mesh_are_cautioned_against_where_material_slips(
+    tmp_path, kind, side, contact, said
+):
+    """Other shapes have a part for each face."""
+    import trimesh
+
+    trimesh.creation.box(bounds=[[0.2] * 3, [0.8] * 3]).export(tmp_path / "tub.stl")
+    box = {"kind": "box", "lower": [0.2] * 3, "upper": [0.8] * 3}
+    shape = box if kind == "box" else {"kind": "mesh", "file": str(tmp_path / "tub.stl")}
+    lower = 0.3 if side == "inside" else 0.85
     case = parse_case(
         {
-            "space": "plane-strain",
+            "space": "3d",
             "until": 0.1,
-            "grid": {"cell_size": 0.05, "domain": {"x": [0, 1], "z": [0, 1]}},
-            "walls": {"tub": {"surface": {"kind": "body", "shape": shape, **surface}, "contact": contact}},
+            "grid": {"cell_size": 0.05, "domain": {a: [0, 1] for a in "xyz"}},
+            "walls": {"tub": {"surface": {"kind": "body", "shape": shape, "side": side}, "contact": contact}},
             "bodies": [
                 {
-                    "shape": {"kind": "box", "lower": [0.3, 0.85], "upper": [0.4, 0.95]}
-                    if surface["side"] == "outside"
-                    else {"kind": "box", "lower": [0.3, 0.3], "upper": [0.4, 0.4]},
+                    "shape": {"kind": "box", "lower": [lower] * 3, "upper": [lower + 0.1] * 3},
                     "material": {"law": "newtonian", "density": 1000, "viscosity": 1, "sound_speed": 10},
                 }
             ],
         }
     )
-    assert any("walls.tub has inner edges" in sentence for sentence in cautions(case)) == said
+    assert any("walls.tub is a mesh" in sentence for sentence in cautions(case)) == said

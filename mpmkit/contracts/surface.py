@@ -15,6 +15,9 @@ class PlacedSurface(Protocol):
 
     It may also have a ``thickness``, m: of a wall with room for material on both of its sides. One that has
     none, or None, fills all that is behind its surface.
+
+    It may have ``parts``, a sequence of such surfaces that are together the wall, none of which has an inner
+    edge. A node in an inner edge knows one face of each part: of a wall that is one part, it knows one.
     """
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:

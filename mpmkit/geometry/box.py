@@ -52,18 +52,20 @@ class Box(Shape):
     def _brick(self, space: Space) -> Brick:
         """A cylinder is the whole of its section, so that no surface is at the axis."""
         lower, upper = np.array(self.lower, dtype=float), np.array(self.upper, dtype=float)
-        if space.radial and lower[0] == 0:
+        if self._at_axis(space):
             lower[0] = -upper[0]
         return Brick(lower, upper)
 
     def ends(self, space: Space) -> tuple[str, ...]:
-        at_axis = space.radial and self.lower[0] == 0
-        return tuple(face for face in space.faces if not (at_axis and face == "r_min"))
+        return tuple(face for face in space.faces if not (self._at_axis(space) and face == "r_min"))
+
+    def _at_axis(self, space: Space) -> bool:
+        return space.radial and self.lower[0] == 0
 
     def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
         faces = [[f"{axis}_{side}" not in open_ends for axis in space.axes] for side in ("min", "max")]
         closed = np.array(faces)
-        if "r_min" not in self.ends(space):
+        if self._at_axis(space):
             closed[0, 0] = closed[1, 0]
         return BrickShell(self._brick(space), thickness, closed)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,8 @@ class MovingSolid:
         motion: None for a wall at rest.
         appears, vanishes: s; it is there from the one to the other. None: from the start, for ever.
         thickness: m; infinite for a wall that has material on one of its sides only.
+        radial: whether the first coordinate is the radius.
+        within: the solid of which it is a part, and whose points it moves with; None: it is no part.
     """
 
     solid: Solid
@@ -28,11 +30,18 @@ class MovingSolid:
     appears: float | None = None
     vanishes: float | None = None
     thickness: float = math.inf
+    radial: bool = False
+    within: Solid | None = None
 
     @cached_property
     def _hull(self) -> Hull:
         """That of the solid; of one without an end, which cannot turn, a place."""
-        return self.solid.hull() or (np.zeros((1, 1)), 0.0)
+        return (self.within or self.solid).hull() or (np.zeros((1, 1)), 0.0)
+
+    @cached_property
+    def parts(self) -> tuple[MovingSolid, ...]:
+        """Walls that are together this one, each without inner edges."""
+        return tuple(replace(self, solid=part, within=self.solid) for part in self.solid.parts(self.radial))
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
         """d, m, (k,), and n, (k, dim), at points in the scene, m, (k, dim), at a time, s."""

@@ -11,7 +11,7 @@ import numpy as np
 from ..contracts.base import quantity
 from ..spaces import Space
 from .base import Shape, squared_distance
-from .distance import Revolved, Section, Solid, trapezium, trapezium_shell
+from .distance import Jointed, Revolved, Section, Solid, trapezium, trapezium_plates, trapezium_shell
 from .distance.section import Loop
 from .revolved import part_of_revolved
 
@@ -58,7 +58,9 @@ class Upright(Shape):
         return self.ends(space)
 
     def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
-        return self._turned(trapezium_shell(*self._radii(), self.height, thickness, open_ends), space)
+        shell = *self._radii(), self.height, thickness, open_ends
+        plates = [self._turned(loops, space) for loops in trapezium_plates(*shell)]
+        return Jointed(self._turned(trapezium_shell(*shell), space), tuple(plates))
 
     def _turned(self, loops: list[Loop], space: Space) -> Solid:
         """The section that loops make around the axis of the body; in 3-D what it makes as it turns."""

@@ -124,73 +124,70 @@ def _velocity(nodes, g, index, share, dim, velocity):
 
 
 @function()
-def push(
-    nodes,
-    acting,
-    at,
-    normal,
-    index,
-    free,
-    share,
-    stiffness,
-    before,
-    after,
-    whole,
-    pulls,
-    sweeps,
-    solved,
-    impulse,
-):
+def give(nodes, acting, at, normal, index, free, share, stiffness, before, after, solved, impulse, held):
     """Give the nodes the impulses that change the velocities at the wall from ``before`` to ``after``.
 
-    Nodes share neighbours, so that one impulse disturbs the next: what the wall holds is put right in some
-    sweeps, the normal part or, with ``whole``, all of it. Without ``pulls`` no impulse may come to pull.
-
-    Returns in ``impulse`` (k, dim), N s.
+    Args:
+        impulse: (k, dim), N s, what is given (out).
+        held: (k,) whether the velocity is to change at all there (out), uint8.
     """
     dim = normal.shape[1]
-    count = len(acting)
-    step = np.empty(dim)
-    held = np.zeros(count, dtype=np.uint8)
-    for j in range(count):
+    for j in range(len(acting)):
         k = acting[j]
         resist = along = 0.0
+        held[j] = 0
         for e in range(dim):
             resist += normal[k, e] ** 2 * stiffness[j, e]
             along += normal[k, e] * (after[j, e] - before[j, e])
             held[j] |= after[j, e] != before[j, e]
         for e in range(dim):
             across = after[j, e] - before[j, e] - along * normal[k, e]
-            step[e] = across / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
+            impulse[j, e] = across / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
             if resist > 0.0:
-                step[e] += along / resist * normal[k, e]
-            impulse[j, e] = step[e]
+                impulse[j, e] += along / resist * normal[k, e]
         if held[j]:
-            _give(nodes, at[k], index[k], share[j], free, dim, step, solved)
-    velocity = np.empty(dim)
-    for _ in range(sweeps):
-        for j in range(count):
-            if not held[j]:
-                continue
-            k = acting[j]
-            _velocity(nodes, at[k], index[k], share[j], dim, velocity)
-            resist = along = pushed = 0.0
+            _give(nodes, at[k], index[k], share[j], free, dim, impulse[j], solved)
+
+
+@function()
+def sweep(
+    nodes, acting, at, normal, index, free, share, stiffness, after, whole, pulls, backwards, solved, impulse,
+    held,
+):  # fmt: skip
+    """Bring what the wall holds to the velocities ``after`` once more, one place after the other.
+
+    Nodes have neighbours in common, and those of another wall, so that one impulse disturbs the next. What is
+    put right is the normal part or, with ``whole``, all of it. Without ``pulls`` no impulse may come to pull.
+    Sweeps go to and fro: each place is a projection in the metric of the masses, and their product has the
+    same transpose only if it reads the same from both ends. One that has not turns stress into motion that
+    does not give it back, and what sticks in a corner of two walls flutters, ever faster with FLIP.
+    """
+    dim = normal.shape[1]
+    count = len(acting)
+    step, velocity = np.empty(dim), np.empty(dim)
+    for turn in range(count):
+        j = count - 1 - turn if backwards else turn
+        if not held[j]:
+            continue
+        k = acting[j]
+        _velocity(nodes, at[k], index[k], share[j], dim, velocity)
+        resist = along = pushed = 0.0
+        for e in range(dim):
+            resist += normal[k, e] ** 2 * stiffness[j, e]
+            along += normal[k, e] * (after[j, e] - velocity[e])
+            pushed += normal[k, e] * impulse[j, e]
+        if whole:
             for e in range(dim):
-                resist += normal[k, e] ** 2 * stiffness[j, e]
-                along += normal[k, e] * (after[j, e] - velocity[e])
-                pushed += normal[k, e] * impulse[j, e]
-            if whole:
-                for e in range(dim):
-                    step[e] = (after[j, e] - velocity[e]) / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
-            else:
-                more = along / resist if resist > 0.0 else 0.0
-                if not pulls:
-                    more = max(more, -pushed)
-                for e in range(dim):
-                    step[e] = more * normal[k, e]
+                step[e] = (after[j, e] - velocity[e]) / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
+        else:
+            more = along / resist if resist > 0.0 else 0.0
+            if not pulls:
+                more = max(more, -pushed)
             for e in range(dim):
-                impulse[j, e] += step[e]
-            _give(nodes, at[k], index[k], share[j], free, dim, step, solved)
+                step[e] = more * normal[k, e]
+        for e in range(dim):
+            impulse[j, e] += step[e]
+        _give(nodes, at[k], index[k], share[j], free, dim, step, solved)
 
 
 @function()

@@ -60,8 +60,7 @@ def hold_box(validate, contact, *scene):
     validate(f"{name}: largest speed over √(g H)", speed / math.sqrt(G * 0.12), below(1e-3, "0"))
 
 
-JITTERS = pytest.mark.xfail(reason="in corners of turned planes, what sticks jitters with APIC", strict=True)
-BOXES = ["slip", pytest.param("stick", marks=JITTERS)]
+BOXES = ["slip", "stick"]
 
 
 @pytest.mark.parametrize("contact", BOXES)

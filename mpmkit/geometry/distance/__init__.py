@@ -3,8 +3,8 @@
 from .ball import Ball
 from .brick import Brick, BrickShell
 from .revolved import Revolved
-from .section import Section, trapezium, trapezium_shell
-from .solid import HalfSpace, Inverted, Shell, Solid
+from .section import Section, trapezium, trapezium_plates, trapezium_shell
+from .solid import HalfSpace, Inverted, Jointed, Shell, Solid
 
 __all__ = [
     "Ball",
@@ -12,10 +12,12 @@ __all__ = [
     "BrickShell",
     "HalfSpace",
     "Inverted",
+    "Jointed",
     "Revolved",
     "Section",
     "Shell",
     "Solid",
     "trapezium",
+    "trapezium_plates",
     "trapezium_shell",
 ]

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from .ball import unit
-from .solid import Found, Solid
+from .solid import Found, HalfSpace, Solid
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,16 @@ class Brick(Solid):
             np.where(is_outside, outside, depth),
             side * np.where(is_outside[:, None], outwards, nearest),
         )
+
+    def outsides(self, radial: bool) -> tuple[Solid, ...]:
+        """A half-space for each face."""
+        normals = np.eye(len(self.lower))
+        below = [
+            HalfSpace(self.lower, n)
+            for axis, n in enumerate(normals)
+            if not radial or axis or self.lower[0] > 0
+        ]
+        return (*below, *(HalfSpace(self.upper, -n) for n in normals))
 
     def hull(self) -> tuple[np.ndarray, float]:
         ends = np.stack([self.lower, self.upper])
@@ -71,6 +81,9 @@ class BrickShell(Solid):
                 lower[axis] = self.inner.upper[axis]
             found.append(Brick(lower, upper))
         return found
+
+    def parts(self, radial: bool) -> tuple[Solid, ...]:
+        return tuple(plate for plate in self.plates() if not radial or plate.upper[0] > 0)
 
     def distance(self, x: np.ndarray) -> Found:
         around, outwards = self.outer.distance(x)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .ball import unit
-from .section import Section
 from .solid import Found, Solid
 
 _AROUND = 64
@@ -16,12 +15,14 @@ _AROUND = 64
 
 @dataclass(frozen=True)
 class Revolved(Solid):
-    """A symmetric section, turned about the vertical through ``middle``, m, (2,), in 3-D.
+    """A section, turned about the vertical through ``middle``, m, (2,), in 3-D.
+
+    It is symmetric about the axis, or has no part behind it.
 
     The point of the surface nearest to a point is in its plane with the axis: φ is that of the section.
     """
 
-    section: Section
+    section: Solid
     middle: np.ndarray
 
     def distance(self, x: np.ndarray) -> Found:
@@ -29,8 +30,17 @@ class Revolved(Solid):
         distance, gradient = self.section.distance(np.column_stack([radius, x[:, 2]]))
         return distance, np.column_stack([gradient[:, :1] * outwards, gradient[:, 1]])
 
-    def hull(self) -> tuple[np.ndarray, float]:
-        corners, _ = self.section.hull()
+    def parts(self, radial: bool) -> tuple[Solid, ...]:
+        return tuple(Revolved(part, self.middle) for part in self.section.parts(radial=True))
+
+    def outsides(self, radial: bool) -> tuple[Solid, ...]:
+        return tuple(Revolved(part, self.middle) for part in self.section.outsides(radial=True))
+
+    def hull(self) -> tuple[np.ndarray, float] | None:
+        found = self.section.hull()
+        if found is None:
+            return None
+        corners, _ = found
         angle = 2 * np.pi * np.arange(_AROUND) / _AROUND
         circle = np.column_stack([np.cos(angle), np.sin(angle)]) / np.cos(np.pi / _AROUND)
         around = [

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...kernels.sections import section_distance
-from .solid import Found, Solid
+from .solid import Found, HalfSpace, Solid
 
 Loop = list[tuple[float, float]]
 
@@ -37,6 +37,19 @@ class Section(Solid):
 
     def distance(self, x: np.ndarray) -> Found:
         return section_distance(np.ascontiguousarray(x, dtype=float), self.start, self.end)
+
+    def outsides(self, radial: bool) -> tuple[Solid, ...]:
+        """A half-space for each edge, where the region is convex."""
+        along = self.end - self.start
+        inwards = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
+        depth = np.einsum("pec,ec->pe", self.start[:, None] - self.start, inwards)
+        if depth.min() < -1e-9 * np.ptp(self.start, axis=0).max():
+            return super().outsides(radial)
+        return tuple(
+            HalfSpace(start, n)
+            for start, end, n in zip(self.start, self.end, inwards, strict=True)
+            if not radial or max(start[0], end[0]) > 0
+        )
 
     def hull(self) -> tuple[np.ndarray, float]:
         return self.start, 0.0
@@ -71,3 +84,29 @@ def trapezium_shell(
     if "bottom" in open_ends:
         return [[R1, L1, L0, l0, l1, r1, r0, R0]]
     return [[L0, R0, R1, L1], [r0, l0, l1, r1]]
+
+
+def trapezium_plates(
+    bottom: float, top: float, height: float, thickness: float, open_ends: Sequence[str]
+) -> list[list[Loop]]:
+    """The loops of the parts of ``trapezium_shell`` that meet in its inner edges: its sides, and a plate at
+    each closed end. They overlap, so that none ends in an edge. An end that is a point has no plate."""
+    radii = {"bottom": bottom, "top": top}
+    plated = [end for end in ("bottom", "top") if end not in open_ends and radii[end] > 0]
+    if not plated:
+        return [trapezium_shell(bottom, top, height, thickness, open_ends)]
+    slope = (top - bottom) / height
+
+    def outer(z: float) -> float:
+        return bottom + slope * z + thickness * float(np.hypot(1.0, slope))
+
+    def plate(low: float, high: float) -> list[Loop]:
+        return [[(-outer(low), low), (outer(low), low), (outer(high), high), (-outer(high), high)]]
+
+    low = 0.0 if "bottom" in open_ends else -thickness
+    high = height if "top" in open_ends else height + thickness
+    inner = [(top, high), (top, height), (bottom, 0.0), (bottom, low)]
+    right = [(outer(low), low), (outer(high), high), *inner]
+    left = [(-r, z) for r, z in reversed(right)]
+    levels = {"bottom": (low, 0.0), "top": (height, high)}
+    return [[right, left], *(plate(*levels[end]) for end in plated)]

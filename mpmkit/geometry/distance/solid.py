@@ -26,6 +26,19 @@ class Solid(ABC):
         """Points, m, (m, dim), and a radius, m: no point of its surface is farther from the convex hull of
         the points; None if the surface has no end."""
 
+    def parts(self, radial: bool) -> tuple[Solid, ...]:
+        """Solids that are together this one, where its surface has inner edges: each surface is smooth there.
+
+        Args:
+            radial: whether the first coordinate is the radius; what is behind the axis is left out.
+        """
+        return (self,)
+
+    def outsides(self, radial: bool) -> tuple[Solid, ...]:
+        """Solids that are together all of space around this one, see ``parts``: one for each face of a convex
+        one."""
+        return (Inverted(self),)
+
     def extent(self) -> float:
         """Its least extent along an axis, m; infinite where it has no end."""
         found = self.hull()
@@ -56,8 +69,28 @@ class Inverted(Solid):
         distance, gradient = self.solid.distance(x)
         return -distance, -gradient
 
+    def parts(self, radial: bool) -> tuple[Solid, ...]:
+        return self.solid.outsides(radial)
+
     def hull(self) -> tuple[np.ndarray, float] | None:
         return self.solid.hull()
+
+
+@dataclass(frozen=True)
+class Jointed(Solid):
+    """A solid whose parts are known. They overlap where they meet, and none ends in an inner edge."""
+
+    whole: Solid
+    pieces: tuple[Solid, ...]
+
+    def distance(self, x: np.ndarray) -> Found:
+        return self.whole.distance(x)
+
+    def parts(self, radial: bool) -> tuple[Solid, ...]:
+        return self.pieces
+
+    def hull(self) -> tuple[np.ndarray, float] | None:
+        return self.whole.hull()
 
 
 @dataclass(frozen=True)

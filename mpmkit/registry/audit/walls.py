@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import get_args
 
@@ -49,6 +50,20 @@ class AuditedSurface:
         if not found > 0:
             raise PluginFault(self.author, f"has a thickness of {found} m; it must be above 0")
         return found
+
+    @property
+    def parts(self) -> list[AuditedSurface]:
+        """The surfaces that are together the wall; itself if it has no parts."""
+        found = getattr(self.placed, "parts", None)
+        if found is None:
+            return [self]
+        if not isinstance(found, Sequence) or not found:
+            raise PluginFault(
+                self.author, f"has the parts {described(found)}; they must be a sequence of surfaces"
+            )
+        for part in found:
+            _require_methods(self.author, part, "has {} among its parts")
+        return [AuditedSurface(self.author, part) for part in found]
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
         """d, m, (k,), and n, (k, dim), at points, m, (k, dim)."""
@@ -100,12 +115,14 @@ def placed(author: Surface, space: Space) -> AuditedSurface:
         PluginFault: it has no surface for that space.
     """
     found = author.placed(space)
+    _require_methods(author, found, "returned {} from placed")
+    return AuditedSurface(author, found)
+
+
+def _require_methods(author: Surface, found: object, what: str) -> None:
     for method in ("distance", "velocity", "fastest", "present"):
         if not callable(getattr(found, method, None)):
-            raise PluginFault(
-                author, f"returned {described(found)} from placed; it must have the method {method}"
-            )
-    return AuditedSurface(author, found)
+            raise PluginFault(author, f"{what.format(described(found))}; it must have the method {method}")
 
 
 def require_contact(author: Contact) -> None:

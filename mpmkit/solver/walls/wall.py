@@ -1,4 +1,4 @@
-"""One wall of a scene: the nodes at which it acts, and what it has given to the material."""
+"""A wall of a scene, or a part of one: the nodes at which it acts, and what it has given to the material."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from ..stateful import State, plain_state, restore_plain
 from .wall_nodes import LAG, MARGIN, WallNodes
 
 SWEEPS = 3
-"""Turns in which the impulses at neighbouring places are brought together."""
+"""Turns, to and fro, in which the impulses at neighbouring places are brought together; an odd number, so
+that with the first one forwards the whole reads the same from both ends."""
 
 
 class Wall:
@@ -25,8 +26,7 @@ class Wall:
             origin of the scene, N m s, ``(3,)`` or ``(1,)`` about the axis out of the plane, and work, J.
     """
 
-    def __init__(self, name: str, surface: audit.AuditedSurface, contact: Contact, grid: Grid) -> None:
-        self.name = name
+    def __init__(self, surface: audit.AuditedSurface, contact: Contact, grid: Grid) -> None:
         self.surface = surface
         self.contact = contact
         self.grid = grid
@@ -38,6 +38,7 @@ class Wall:
         self._there = self.changes = False
         self.touches = 0
         self._near: WallNodes | None = None
+        self._acting, self._after = np.zeros(0, dtype=np.int64), np.zeros((0, grid.dim))
 
     @property
     def near(self) -> WallNodes:
@@ -47,7 +48,7 @@ class Wall:
 
     def state(self) -> State:
         """What it has given, where it was looked for, and what its contact remembers at the nodes."""
-        kept = plain_state(self, but=("name", "odd", "pulls", "_near"))
+        kept = plain_state(self, but=("odd", "pulls", "_near", "_acting", "_after"))
         if self._near is not None:
             kept |= {f"memory/{name}": array for name, array in self._near.memory.items()}
         return kept
@@ -62,6 +63,7 @@ class Wall:
     def lay(self, window: Window, active: np.ndarray, state: State | None = None) -> None:
         """Go over to a window that has been laid anew, or back to one in which the wall had a state."""
         before, self._near = self._near, WallNodes(self.contact, self.grid, window, active)
+        self._acting, self._after = np.zeros(0, dtype=np.int64), np.zeros((0, self.grid.dim))
         if state is not None:
             for name, array in self._near.memory.items():
                 array[...] = state[f"memory/{name}"]
@@ -137,39 +139,54 @@ class Wall:
         )  # fmt: skip
 
     def act(self, rehearse: bool, dt: float | None) -> None:
-        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
-        if not self.touches:
-            return
+        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s.
+
+        Other walls may push the same nodes: ``sweep`` and ``count`` follow.
+        """
         w = self.near
         w.see_faces()
         count = wall_contact.at_wall_velocities(
             w.window.nodes, w.at_wall, w.at, w.d, w.normal, w.index, w.weight, w.free, w.acting, w.share,
             w.stiffness, w.velocity, w.inner,
         )  # fmt: skip
-        sums = self.sums
-        if dt is None:
-            sums = self._mapped
-            sums[:] = 0.0
+        self._acting = w.acting[:count]
+        self._after = w.velocity[:count]
         if not count:
             return
-        acting, before = w.acting[:count], w.velocity[:count].copy()
+        before = self._after.copy()
         nodes = self._given(count, dt)
         if rehearse:
             audit.rehearse_contact(self.contact, nodes, dt)
         audit.call_contact(self.contact, nodes, dt)
-        w.remember(acting, nodes.memory)
-        impulse = self._push(acting, before, nodes.velocity, dt is not None)
-        self._add_up(impulse, acting, sums)
+        w.remember(self._acting, nodes.memory)
+        self._give(before, self._after, dt is not None)
 
-    def _push(self, acting: np.ndarray, before: np.ndarray, after: np.ndarray, solved: bool) -> np.ndarray:
-        """Bring the velocities at the wall from ``before`` to ``after``; the impulses, N s, ``(k, dim)``."""
-        w, impulse = self.near, np.zeros_like(before)
-        pulls = self.pulls or not solved  # until the next decision, what is in contact is held
-        wall_contact.push(
-            w.window.nodes, acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before, after,
-            self.odd, pulls, SWEEPS, solved, impulse,
+    def sweep(self, backwards: bool, solved: bool) -> None:
+        """Bring what it holds to the velocities that the contact gave, after others have pushed the nodes."""
+        self._sweep(self._after, backwards, solved)
+
+    def count(self, solved: bool) -> None:
+        """Add up what it has given at the nodes."""
+        sums = self.sums
+        if not solved:
+            sums = self._mapped
+            sums[:] = 0.0
+        self._add_up(self.near.given[: len(self._acting)], self._acting, sums)
+
+    def _give(self, before: np.ndarray, after: np.ndarray, solved: bool) -> None:
+        w = self.near
+        wall_contact.give(
+            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
+            after, solved, w.given, w.held_at,
         )  # fmt: skip
-        return impulse
+
+    def _sweep(self, after: np.ndarray, backwards: bool, solved: bool) -> None:
+        w = self.near
+        pulls = self.pulls or not solved  # until the next decision, what is in contact is held
+        wall_contact.sweep(
+            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, after,
+            self.odd, pulls, backwards, solved, w.given, w.held_at,
+        )  # fmt: skip
 
     def _shared(self, acting: np.ndarray, velocity: np.ndarray, touched: np.ndarray) -> np.ndarray:
         """What neighbours add to the push of each place by itself, N s, ``(k,)``: they push the same nodes.
@@ -183,7 +200,11 @@ class Wall:
         away = np.where(
             touched, np.minimum(((velocity - w.wall_velocity[acting]) * normal).sum(axis=1), 0.0), 0.0
         )
-        impulse = self._push(acting, velocity, velocity - away[:, None] * normal, True)
+        after = velocity - away[:, None] * normal
+        self._give(velocity, after, True)
+        for turn in range(SWEEPS):
+            self._sweep(after, turn % 2 == 0, True)
+        impulse = self.near.given[: len(acting)].copy()
         nodes[rows] = kept
         resistance = (normal * normal * w.stiffness[: len(acting)]).sum(axis=1)
         alone = np.divide(-away, resistance, out=np.zeros(len(acting)), where=resistance > 0)

@@ -79,7 +79,8 @@ class WallNodes:
         self.share = np.zeros((k, 1 + (1 << dim)))
         self.held = np.zeros((k, 1 + 2 * dim))
         self.pair = np.zeros((k, 2))
-        self.stiffness, self.velocity, self.inner, self.impulse = np.zeros((4, k, dim))
+        self.stiffness, self.velocity, self.inner, self.given, self.impulse = np.zeros((5, k, dim))
+        self.held_at = np.zeros(k, dtype=np.uint8)
         self.dense[:] = wall_nodes.FAR
         self.found, self.sorted = True, False
 

@@ -12,7 +12,7 @@ from ..grid import Grid, Window
 from ..particles import Particles
 from ..sorting import Sorting
 from ..stateful import State, Stateful, plain_state, restore, restore_plain, state_of
-from .wall import Wall
+from .wall import SWEEPS, Wall
 
 
 class Walls:
@@ -26,10 +26,15 @@ class Walls:
         self.grid = grid
         self.window = window
         self.particles = particles
-        self.walls = [
-            Wall(name, audit.placed(wall.surface, case.space_), wall.contact, grid)
-            for name, wall in case.walls.items()
-        ]
+        self.walls: list[Wall] = []
+        """Every part of every wall, in the order in which they act."""
+        names, of = [], []
+        for number, (name, wall) in enumerate(case.walls.items()):
+            for k, part in enumerate(audit.placed(wall.surface, case.space_).parts):
+                self.walls.append(Wall(part, wall.contact, grid))
+                names.append(f"{name}/{k}")
+                of.append(number)
+        self._names, self._of = tuple(names), tuple(of)
         self._sorts = -1
 
     def __len__(self) -> int:
@@ -38,7 +43,7 @@ class Walls:
     @property
     def components(self) -> dict[str, Stateful]:
         """What has a state of its own."""
-        return {wall.name: wall for wall in self.walls}
+        return dict(zip(self._names, self.walls, strict=True))
 
     def state(self) -> State:
         """That of its walls."""
@@ -82,7 +87,10 @@ class Walls:
 
     def sums(self) -> np.ndarray:
         """What each wall has given so far, ``(walls, …)``, see ``Wall``."""
-        return np.array([wall.sums for wall in self.walls])
+        found = np.zeros((len(set(self._of)), len(self.walls[0].sums) if self.walls else 0))
+        for number, part in zip(self._of, self.walls, strict=True):
+            found[number] += part.sums
+        return found
 
     def fastest(self, t0: float, t1: float) -> float:
         """Upper bound of the speed of all walls between two times, m/s."""
@@ -119,11 +127,18 @@ class Walls:
 
     def constrain(self, dt: float | None = None, rehearse: bool = False) -> None:
         """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill all ghosts."""
-        if not any(wall.touches for wall in self.walls):
+        touched, solved = [wall for wall in self.walls if wall.touches], dt is not None
+        if not touched:
             return
-        for wall in self.walls:
+        for wall in touched:
             wall.act(rehearse, dt)
-        for wall in reversed(self.walls):
+        for turn in range(SWEEPS):
+            back = turn % 2 == 0
+            for wall in reversed(touched) if back else touched:
+                wall.sweep(back, solved)
+        for wall in touched:
+            wall.count(solved)
+        for wall in reversed(touched):
             wall.fill(dt)
         last = 1 + (1 if dt is None else 2) * self.grid.dim
         active = self.sorting.active

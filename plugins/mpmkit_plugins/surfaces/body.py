@@ -76,33 +76,24 @@ class BodySurface(RigidSurface):
         return None
 
     def cautions(self, case: Any) -> list[str]:
-        if self.side == "outside" or not self._has_inner_edges(case.space_):
+        """Of faces of a mesh that meet inside it a node knows the nearest; other shapes have parts."""
+        if self.side == "outside" or self.shape.kind != "mesh":
             return []
         return [
-            f"walls.{name} has inner edges, and contact '{wall.contact.name}' lets material slide there: "
-            "a node knows only one of the faces, so that material may sink into the edge; "
+            f"walls.{name} is a mesh, and contact '{wall.contact.name}' lets material slide in its inner "
+            "edges: a node knows only one of the faces there, so that material may sink into the edge; "
             "a wall of its own for each face holds it"
             for name, wall in case.walls.items()
             if wall.surface == self and wall.contact.parity == "mirror"
         ]
 
-    def _has_inner_edges(self, space: Space) -> bool:
-        """Whether faces meet inside: those of a box or a mesh, or the bottom or top of an upright body."""
-        if self.shape.kind == "sphere":
-            return False
-        ends = self.shape.ends(space)
-        left_open = (
-            ends if self.open is None and self.shape.kind in ("cylinder", "frustum") else self.open or []
-        )
-        return self.thickness is None or self.shape.kind in ("box", "mesh") or set(left_open) != set(ends)
-
     def placed(self, space: Space) -> MovingSolid:
         if self.side == "outside":
             obstacle = self.shape.solid(space)
-            return self.moving(obstacle, obstacle.extent())
+            return self.moving(obstacle, space, obstacle.extent())
         if self.thickness is None:
-            return self.moving(Inverted(self.shape.solid(space)))
-        return self.moving(self.shape.shell(space, self.thickness, self.open), self.thickness)
+            return self.moving(Inverted(self.shape.solid(space)), space)
+        return self.moving(self.shape.shell(space, self.thickness, self.open), space, self.thickness)
 
 
 @hookimpl

@@ -42,7 +42,7 @@ class Plane(RigidSurface):
     def placed(self, space: Space) -> MovingSolid:
         normal = np.array(self.normal) / np.abs(self.normal).max()  # whose square may be no number
         normal /= np.linalg.norm(normal)
-        return self.moving(HalfSpace(np.array(self.point), normal))
+        return self.moving(HalfSpace(np.array(self.point), normal), space)
 
 
 @hookimpl

@@ -40,9 +40,9 @@ class RigidSurface(Surface):
         found = None if self.motion is None else self.motion.problem(space)
         return None if found is None else f"the motion's {found}"
 
-    def moving(self, solid: Solid, thickness: float = math.inf) -> MovingSolid:
+    def moving(self, solid: Solid, space: Space, thickness: float = math.inf) -> MovingSolid:
         """The solid in its motion, for the time in which it is there."""
-        return MovingSolid(solid, self.motion, self.appears, self.vanishes, thickness)
+        return MovingSolid(solid, self.motion, self.appears, self.vanishes, thickness, space.radial)
 
 
 def _numbers(value: Any, field: str = "") -> Iterator[tuple[str, float]]:
