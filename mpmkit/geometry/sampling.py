@@ -9,6 +9,7 @@ import numpy as np
 
 from ..spaces import Space
 from .base import Shape
+from .filled_boxes import filled_boxes
 from .lattice import Rows, rows
 
 _SLAB = 1 << 18
@@ -16,6 +17,9 @@ _SLAB = 1 << 18
 
 _THINNEST = 0.5
 """Least thickness of a body, in spacings of the particles."""
+
+_SMALL = 0.1
+"""Relative change of the volumes of cut boxes that makes up for counting them by points."""
 
 _SAME_SHARE = 1e-9
 """Relative difference up to which a cut leaves the same share of the body as of its boxes."""
@@ -49,13 +53,13 @@ def sample(
 ) -> Sample:
     """Particles in the boxes of the lattice with spacing s_a = Δx/m_a whose centres are inside the shape.
 
-    Boxes are cut where the body ends along an axis and where ``keep`` ends, so that the outline of the body
-    is kept: the particle is at the centre of its cut box. A row that is cut shares its width evenly with its
-    neighbour, so that none is a sliver (:func:`mpmkit.geometry.lattice.rows`). Boxes that are not cut are
-    exactly those of the lattice.
+    Boxes are cut where the body ends along an axis and where ``keep`` ends, and a row that is cut shares its
+    width evenly with its neighbour, so that none is a sliver (:func:`mpmkit.geometry.lattice.rows`). At a
+    slanted or curved surface a box is as long as the body is there (``filled_boxes``): the particle is at the
+    centre of its box, and the body is as dense at its surface as inside.
 
-    The volumes are those of the boxes times one factor, by which they add up to the exact volume of the part
-    that is kept: its mass is then exact, though a slanted surface is a staircase on the lattice. Where the
+    Boxes that are not cut are exactly those of the lattice. What of the others is filled is counted by
+    points; one factor, close to 1, makes all volumes add up to the exact volume of what is kept. Where the
     kept part has the same share of the body as of the boxes, as at a symmetry plane through the middle, the
     factor is that of the whole body: a quarter is then the quarter of the whole to the bit.
 
@@ -79,37 +83,44 @@ def sample(
     lower, upper = shape.bounds(space)
     near = shape.tolerance * float((upper - lower).max())
     low, high = (lower, upper) if keep is None else _cut(lower, upper, keep, near)
-    positions, volumes, sides = [np.empty((0, space.dim))], [np.empty(0)], [np.empty((0, space.dim))]
-    raw = raw_kept = 0.0
+    if (high - low < _THINNEST * spacing - near).any():
+        return _none(space)
     axes = []
-    if (high - low >= _THINNEST * spacing - near).all():
-        for a in range(space.dim):
-            cuts = sorted({lower[a], low[a], high[a], upper[a]})
-            axes.append(
-                rows(
-                    cuts,
-                    cuts.index(low[a]),
-                    origin=origin[a],
-                    cell_size=cell_size,
-                    per_cell=per_axis[a],
-                    near=near,
-                )
-            )
-    for points, size, kept in _slabs(axes):
-        inside = shape.contains(points, space)
-        points, size, kept = points[inside], size[inside], kept[inside]
-        volume = space.particle_volume(points, size)
-        raw += float(volume.sum())
-        raw_kept += float(volume[kept].sum())
-        positions.append(points[kept])
-        volumes.append(volume[kept])
-        sides.append(size[kept])
-    volume = np.concatenate(volumes)
-    if len(volume):
-        whole, part = shape.volume(space), shape.volume_between(low, high, space)
-        same_share = abs(part / whole - raw_kept / raw) <= _SAME_SHARE
-        volume *= whole / raw if same_share else part / raw_kept
-    return Sample(np.concatenate(positions), volume, np.concatenate(sides) / 2)
+    for a in range(space.dim):
+        cuts = sorted({lower[a], low[a], high[a], upper[a]})
+        kept = cuts.index(low[a])
+        axes.append(rows(cuts, kept, origin=origin[a], cell_size=cell_size, per_cell=per_axis[a], near=near))
+    inside = np.concatenate([shape.contains(points, space) for points in _centres(axes)])
+    if not inside.any():
+        return _none(space)
+    centre, side, kept, whole = filled_boxes(shape, space, axes, inside)
+    volume = space.particle_volume(centre, side)
+    total, part = shape.volume(space), shape.volume_between(low, high, space)
+    raw, raw_kept = float(volume.sum()), float(volume[kept].sum())
+    if raw_kept and abs(part / total - raw_kept / raw) <= _SAME_SHARE:
+        _scale_to(total, volume, whole, np.ones(len(kept), dtype=bool))
+    elif raw_kept:
+        _scale_to(part, volume, whole, kept)
+    half_size = np.minimum(side / 2, cell_size / 2)
+    return Sample(centre[kept], volume[kept], half_size[kept])
+
+
+def _scale_to(total: float, volume: np.ndarray, whole: np.ndarray, which: np.ndarray) -> None:
+    """Scale the volumes of cut boxes, in place, so that those of ``which`` add up to a total, m³.
+
+    Where that is no small change, those of all boxes are scaled.
+    """
+    cut = ~whole
+    full, rest = float(volume[which & whole].sum()), float(volume[which & cut].sum())
+    factor = (total - full) / rest if rest > 0 else 0.0
+    if abs(factor - 1) < _SMALL:
+        volume[cut] *= factor
+    else:
+        volume *= total / (full + rest)
+
+
+def _none(space: Space) -> Sample:
+    return Sample(np.empty((0, space.dim)), np.empty(0), np.empty((0, space.dim)))
 
 
 def _cut(lower: np.ndarray, upper: np.ndarray, keep: Corners, near: float) -> tuple[np.ndarray, np.ndarray]:
@@ -152,21 +163,9 @@ def expected_count(
     return count
 
 
-def _slabs(axes: list[Rows]) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Centres (n, dim), side lengths (n, dim) and whether they are kept (n,) of the boxes that rows make,
-    a few layers along the first axis at a time; nothing without axes."""
-    if not axes:
-        return
+def _centres(axes: list[Rows]) -> Iterator[np.ndarray]:
+    """Centres (n, dim), m, of the boxes that rows make, a few layers along the first axis at a time."""
     layers = max(1, _SLAB // int(np.prod([len(axis.centre) for axis in axes[1:]])))
     for start in range(0, len(axes[0].centre), layers):
-        part = slice(start, start + layers)
-        counts = [len(axes[0].centre[part]), *(len(axis.centre) for axis in axes[1:])]
-        index = np.indices(counts).reshape(len(axes), -1)
-        index[0] += start
-        centre = np.empty((index.shape[1], len(axes)))
-        width = np.empty_like(centre)
-        kept = np.ones(len(centre), dtype=bool)
-        for a, axis in enumerate(axes):
-            centre[:, a], width[:, a] = axis.centre[index[a]], axis.width[index[a]]
-            kept &= axis.kept[index[a]]
-        yield centre, width, kept
+        coordinates = [axes[0].centre[start : start + layers], *(axis.centre for axis in axes[1:])]
+        yield np.stack(np.meshgrid(*coordinates, indexing="ij"), axis=-1).reshape(-1, len(axes))

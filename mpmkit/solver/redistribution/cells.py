@@ -40,8 +40,9 @@ class BoxCells:
         scatter_pairs(self._dim, PARTS)(
             pairs, block.strides, block.lower, self._tasks, self._base, self._part, self._size, self._size
         )
-        filling = block.crowded(pairs[:, 0])
-        block.fold(filling)
+        sums = np.ascontiguousarray(pairs[:, 0])
+        block.fold(sums)
+        filling = block.crowded(sums)
         block.fill(filling)
         return filling
 

@@ -1,4 +1,4 @@
-"""A block of nodes or cells over the material, folded and filled at the faces of the domain."""
+"""A block of nodes or cells over the material, folded and filled at the faces of the domain and at walls."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.vectors import LANES
 from ...registry import audit
 from ..grid import Grid, Span, Window
+from ..walls import Room
 
 LEAST_ROOM = 0.15
 """Part of its room that a wall must leave a node, so that what is there tells how crowded it is."""
+LEAST_WEIGHT = 0.1
+"""Least weight of the nodes around an image that are in front of all walls; below it, there is no image."""
 PADDING = 2
 """Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
 
@@ -61,20 +64,62 @@ class Mirrored:
         self.centred = centred
         self._ghosts = self._ghost_planes()
         self._whole = self.room = self._room()
-        self._hidden = np.zeros(0, dtype=np.int64)
+        self._hidden = self._behind = self._blind = np.zeros(0, dtype=np.int64)
+        self._image, self._weight = np.zeros((0, 1), dtype=np.int64), np.zeros((0, 1))
 
     def places(self) -> np.ndarray:
         """Where the nodes or cells are, m, in the scene, ``(count, dim)``."""
         index = np.indices(self.shape).reshape(self.grid.dim, -1).T + self.lower
         return self.grid.lower + (index + (0.5 if self.centred else 0.0)) * self.spacing
 
-    def leave(self, part: np.ndarray) -> None:
-        """Leave each only a part of its room, ``(count,)``: what walls that are no faces do not take."""
-        self.room = self._whole * np.maximum(part, LEAST_ROOM)
-        self._hidden = np.flatnonzero(part < LEAST_ROOM)
+    def leave(self, room: Room) -> None:
+        """Leave each only the part of its room that walls leave which are no faces.
+
+        What is behind such a wall is mirrored as at a face. An image lies between nodes: what is behind is
+        shared among those around its image, by their linear weights, and what is filled back is their mean.
+        """
+        self._mirror(room)
+        left = self._whole * room.part
+        self._fold_walls(left)
+        self._hidden = np.flatnonzero(left < LEAST_ROOM * self._whole)
+        self.room = np.maximum(left, LEAST_ROOM * self._whole)
+
+    def _mirror(self, room: Room) -> None:
+        """Find the nodes around the image of each node behind a wall; those behind a wall have no weight."""
+        dim = self.grid.dim
+        behind = np.flatnonzero(room.behind)
+        place = (room.image[behind] - self.grid.lower) / self.spacing - (0.5 if self.centred else 0.0)
+        first = np.floor(place).astype(np.int64)
+        corner = np.array(list(np.ndindex(*(2,) * dim)))
+        number = first[:, None] + corner - self.lower
+        part = (place - first)[:, None]
+        weight = np.where(corner == 1, part, 1 - part).prod(axis=2)
+        there = ((number >= 0) & (number < np.array(self.shape))).all(axis=2)
+        index = np.where(there, number @ np.array(self.strides[:dim]), 0)
+        weight *= there & ~room.behind[index]
+        total = weight.sum(axis=1)
+        seen = total > LEAST_WEIGHT
+        self._behind, self._blind = behind[seen], behind[~seen]
+        self._image, self._weight = index[seen], weight[seen] / total[seen, None]
+
+    def _fold_walls(self, values: np.ndarray) -> None:
+        """Share what lies behind the walls among the nodes around its image, in place."""
+        if len(self._behind):
+            kept = values[self._behind]
+            values[self._behind] = 0.0
+            width = (1,) * (values.ndim - 1)
+            np.add.at(values, self._image, self._weight.reshape(*self._weight.shape, *width) * kept[:, None])
+        values[self._blind] = 0.0
+
+    def _fill_walls(self, values: np.ndarray) -> None:
+        """Give what lies behind the walls the mean of the nodes around its image, in place."""
+        if len(self._behind):
+            width = (1,) * (values.ndim - 1)
+            weight = self._weight.reshape(*self._weight.shape, *width)
+            values[self._behind] = (weight * values[self._image]).sum(axis=1)
 
     def crowded(self, sums: np.ndarray) -> np.ndarray:
-        """Sums over the room, ``(count,)``; one where walls leave too little room to tell."""
+        """Folded sums over the room, ``(count,)``; one where walls leave too little room to tell."""
         crowded = sums / self.room
         crowded[self._hidden] = 1.0
         return crowded
@@ -91,7 +136,7 @@ class Mirrored:
         return field
 
     def fold(self, values: np.ndarray) -> None:
-        """Add what lies behind the faces to its images, in place; it is zero afterwards.
+        """Add what lies behind the faces and the walls to its images, in place; it is zero afterwards.
 
         Args:
             values: ``(count,)`` or ``(count, width)``.
@@ -100,9 +145,11 @@ class Mirrored:
         for ghost, image in self._ghosts:
             block[image] += block[ghost]
             block[ghost] = 0.0
+        self._fold_walls(values)
 
     def fill(self, values: np.ndarray) -> None:
-        """Copy the images to what lies behind the faces, in place."""
+        """Copy the images to what lies behind the faces and the walls, in place."""
+        self._fill_walls(values)
         block = self._block(values)
         for ghost, image in reversed(self._ghosts):
             block[ghost] = block[image]

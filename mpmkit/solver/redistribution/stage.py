@@ -153,7 +153,7 @@ class Stage:
     def _leave_room(self, block: Mirrored) -> None:
         """Tell a block what part of its room the walls leave that are no faces of the grid."""
         if len(self._walls):
-            block.leave(self._walls.open_part(block.places(), block.spacing, block.centred))
+            block.leave(self._walls.room(block.places(), block.spacing, block.centred))
 
     # --- For the redistribution
 

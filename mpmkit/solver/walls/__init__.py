@@ -1,5 +1,5 @@
 """Walls that stand anywhere and move: where they meet the grid, and what they do to its nodes."""
 
-from .walls import Walls
+from .walls import Room, Walls
 
-__all__ = ["Walls"]
+__all__ = ["Room", "Walls"]

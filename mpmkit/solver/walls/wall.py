@@ -6,7 +6,6 @@ import numpy as np
 
 from ...contracts import Contact, ContactNodes
 from ...kernels import ghosts, wall_contact, wall_reach
-from ...kernels.splines import below_surface
 from ...registry import audit
 from ..grid import Grid, Window
 from ..stateful import State, plain_state, restore_plain
@@ -99,12 +98,10 @@ class Wall:
         self._sorted, self._lag = time, 0.0
         self.near.sort(self.surface, time)
 
-    def open_part(self, places: np.ndarray, spacing: float, cells: bool) -> np.ndarray:
-        """Part of the room of nodes, or of cells, that it leaves where it was last, ``(n,)``."""
-        if not self._there:
-            return np.ones(len(places))
-        depth = self.surface.distance(places, self._time)[0] / spacing
-        return np.clip(depth + 0.5, 0.0, 1.0) if cells else below_surface(depth)
+    def seen_from(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Distance, m, ``(n,)``, and normal, ``(n, dim)``, at places, m, where it was last; None where it is
+        not there."""
+        return self.surface.distance(places, self._time) if self._there else None
 
     # --- What it does
 

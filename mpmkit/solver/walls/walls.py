@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...case.model import Case
 from ...kernels import ghosts
 from ...kernels import nodes as node_kernels
+from ...kernels.splines import below_surface
 from ...registry import audit
 from ..grid import Grid, Window
 from ..particles import Particles
 from ..sorting import Sorting
 from ..stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .wall import SWEEPS, Wall
+
+
+@dataclass(frozen=True)
+class Room:
+    """What walls leave of the room of places."""
+
+    part: np.ndarray
+    """Part of the room of each, ``(n,)``."""
+    behind: np.ndarray
+    """Whether each is behind a wall, ``(n,)``."""
+    image: np.ndarray
+    """The same distance in front of that wall, m, ``(n, dim)``; the place itself in front of all."""
 
 
 class Walls:
@@ -64,16 +79,26 @@ class Walls:
         """Whether any wall moves, or may appear or vanish, as far as it has been seen."""
         return any(wall.changes for wall in self.walls)
 
-    def open_part(self, places: np.ndarray, spacing: float, cells: bool) -> np.ndarray:
-        """Part of the room of nodes, or of cells, at some places, m, that the walls leave, ``(n,)``.
+    def room(self, places: np.ndarray, spacing: float, cells: bool) -> Room:
+        """What the walls leave of the room of nodes, or of cells, at some places, m, ``spacing`` m apart.
 
-        It is that of a plane at the same distance: the integral of the node's spline, or of its cell, over
-        what is in front of it. Where walls meet, the parts are multiplied.
+        The part is that of a plane at the same distance: the integral of the node's spline, or of its cell,
+        over what is in front of it. Where walls meet, the parts are multiplied. What is behind several walls
+        is mirrored by the one that it is farthest behind.
         """
-        part = np.ones(len(places))
+        part, deepest = np.ones(len(places)), np.zeros(len(places))
+        image = places.copy()
         for wall in self.walls:
-            part *= wall.open_part(places, spacing, cells)
-        return part
+            seen = wall.seen_from(places)
+            if seen is None:
+                continue
+            distance, normal = seen
+            depth = distance / spacing
+            part *= np.clip(depth + 0.5, 0.0, 1.0) if cells else below_surface(depth)
+            behind = distance < deepest
+            deepest[behind] = distance[behind]
+            image[behind] = places[behind] - 2 * distance[behind, None] * normal[behind]
+        return Room(part, deepest < 0, image)
 
     def follow(self, sorting: Sorting) -> None:
         """Take the nodes that particles can reach from a sorting from now on."""
