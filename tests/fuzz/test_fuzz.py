@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import tempfile
 import time
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
@@ -136,6 +137,44 @@ def survived(data: dict, here: Path) -> None:
     assert {path.name for path in here.iterdir()} <= {"case.json"}
 
 
+def ended(data: dict, here: Path) -> None:
+    """From the command line, for a few steps: done, refused, or stopped by a guard that leaves its run."""
+    if (few := _shortened(data)) is None:
+        return
+    with tempfile.TemporaryDirectory(dir=here) as place:
+        directory = Path(place)
+        (directory / "case.json").write_text(json.dumps(few), encoding="utf-8")
+        with nothing_done(directory, but=("pickle.find_class",)):
+            arguments = ("run", f"{directory}/case.json", "--quiet", "--threads", "1")
+            status, lines = command(*arguments, "--out", f"{directory}/out")
+        if status == 2:
+            require_sentence(status, lines)
+            assert [path.name for path in directory.iterdir()] == ["case.json"]
+            return
+        assert status in (0, 3), (status, lines)
+        assert "Traceback" not in "".join(lines)
+        kept = {path.name for path in (directory / "out").iterdir()}
+        assert {"case.json", "history.nc", "summary.json", "run.log"} <= kept
+        summary = json.loads((directory / "out/summary.json").read_text())
+        assert (summary["stopped_because"] == "finished") == (status == 0), summary
+        if status == 3:
+            assert "stopped at step" in lines[-1]
+
+
+def _shortened(data: dict) -> dict | None:
+    """The case up to five of its first steps, or as it is if it cannot be set up; None if it is too large."""
+    try:
+        case = parse_case(data)
+        require_memory(case)
+        if expected_particles(case) >= MOST:
+            return None
+        simulation = Simulation(case)
+        simulation.choose_time_step()
+    except MpmkitError:
+        return data
+    return data | {"until": min(data["until"], 5 * simulation.time_step), "output": {"report": False}}
+
+
 def text_survived(text: bytes, here: Path) -> None:
     (here / "case.json").write_bytes(text)
     begin = time.monotonic()
@@ -172,6 +211,13 @@ def test_invalid_cases_are_refused_in_one_sentence(here, data):
 def test_mutants_are_refused_or_run(here, data):
     with np.errstate(all="ignore"):
         survived(data, here)
+
+
+@given(data=mutants(walled=True))
+@quick
+def test_cases_with_walls_end_as_they_should(here, data):
+    with np.errstate(all="ignore"):
+        ended(data, here)
 
 
 @given(text=broken_texts())
@@ -246,6 +292,14 @@ def test_thousands_of_invalid_cases_are_refused_in_one_sentence(here, data):
 def test_thousands_of_mutants_are_refused_or_run(here, data):
     with np.errstate(all="ignore"):
         survived(data, here)
+
+
+@pytest.mark.slow
+@given(data=mutants(walled=True))
+@long
+def test_thousands_of_cases_with_walls_end_as_they_should(here, data):
+    with np.errstate(all="ignore"):
+        ended(data, here)
 
 
 @pytest.mark.slow

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from bands import below, close_to
@@ -14,6 +16,7 @@ import mpmkit
 pytestmark = pytest.mark.section(6)
 
 
+@cache
 def carried(velocity, contact, as_one, time=0.5):
     """Concrete in a box that moves with it: its centre of mass against the box, m, and the box's force, N.
 
