@@ -347,16 +347,23 @@ def command(*arguments):
     return [sys.executable, "-m", "mpmkit", *map(str, arguments)]
 
 
-def kill_again_and_again(tmp_path, times, seed):
-    """The run of ``slump_fast``, killed at random and taken up, until it is through."""
+KILLED = {
+    "slump_fast": ["until=8"],
+    "slump_lifted": ["until=4", "walls.mould.surface.motion.velocity=[0, 0.05]"],
+}
+"""Cases that are killed: one of a falling body, and one of a wall that moves, and is touched, to the end."""
+
+
+def kill_again_and_again(tmp_path, name, times, seed):
+    """The run of a slump, killed at random and taken up, until it is through."""
     chosen = random.Random(seed)
-    changes = [*COARSE["slump_fast"], "output.report=false", "until=8"]
-    case = load_case(CASES / "slump_fast.json", changes)
+    changes = [*COARSE[name], *KILLED[name], "output.report=false"]
+    case = load_case(CASES / f"{name}.json", changes)
     mpmkit.run(case, tmp_path / "whole", threads=1)
     directory, killed = tmp_path / "run", 0
     checkpoints = Checkpoints(directory / "checkpoints")
     overrides = [word for change in changes for word in ("--set", change)]
-    more = [CASES / "slump_fast.json", *overrides, "--threads", 1, "--out", directory]
+    more = [CASES / f"{name}.json", *overrides, "--threads", 1, "--out", directory]
     while True:
         before = checkpoints.paths()
         process = subprocess.Popen(command("run", *more, "--quiet", "--checkpoint-every", "0.02s"))
@@ -380,14 +387,15 @@ def kill_again_and_again(tmp_path, times, seed):
 
 
 def test_killed_and_taken_up(tmp_path):
-    assert kill_again_and_again(tmp_path, times=1, seed=1) == 1
+    assert kill_again_and_again(tmp_path, "slump_fast", times=1, seed=1) == 1
 
 
 @pytest.mark.slow
-def test_killed_and_taken_up_twenty_times(tmp_path):
+@pytest.mark.parametrize("name", KILLED)
+def test_killed_and_taken_up_twenty_times(tmp_path, name):
     total = 0
     for seed in range(20):
-        total += kill_again_and_again(tmp_path / str(seed), times=20 - total, seed=seed)
+        total += kill_again_and_again(tmp_path / str(seed), name, times=20 - total, seed=seed)
         if total >= 20:
             break
     assert total >= 20
