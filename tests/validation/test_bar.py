@@ -21,7 +21,6 @@ from mpmkit.errors import GuardStop
 pytestmark = pytest.mark.section(5)
 
 LENGTH, MODULUS, DENSITY, SPEED, UNTIL = 25.0, 100.0, 1.0, 0.1, 100.0
-SLOW_ORDERS = [pytest.param(order, marks=pytest.mark.slow) for order in ("usf", "musl")]
 ENERGY = DENSITY * SPEED**2 * LENGTH / 4  # a unit of cross-section
 TABLE = {
     (13, 1, "linear"): {"usf": 1.0018, "usl": 0.9955, "musl": 0.9982},
@@ -113,7 +112,8 @@ def test_step_period_and_initial_energy(validate):
         validate(f"Bar: {quarters}/4 of the period", zero, close_to(2.5 * quarters, rel=5e-3), unit="s")
 
 
-@pytest.mark.parametrize("order", [*SLOW_ORDERS, "usl"])
+@pytest.mark.slow
+@pytest.mark.parametrize("order", ["usf", "musl", "usl"])
 def test_energy_with_cpgimp_at_50_cells(validate, order):
     ratio, largest, _ = vibrate(50, 2, "cpgimp", order)
     name = energy_after("50 cells, 2 particles, cpGIMP", order)
