@@ -20,6 +20,7 @@ from pairwise import every_pair
 
 import mpmkit
 from mpmkit.case import load_case, parse_case
+from mpmkit.cli import main
 from mpmkit.errors import CaseError
 from mpmkit.output.checkpoints import MAGIC, Checkpoints
 from mpmkit.running import resume as resume_module
@@ -417,12 +418,13 @@ def test_a_run_is_repeated_from_its_directory(tmp_path):
     same_histories(directory, tmp_path / "run-rerun")
 
 
-def test_a_rerun_says_what_differs(tmp_path):
+def test_a_rerun_says_what_differs(tmp_path, capsys):
     case, directory, _ = run(tmp_path)
     mpmkit.run(case, directory)
     data = json.loads((directory / "case.json").read_text())
     data["bodies"][0]["material"]["consistency"] *= 1 + 1e-12
     (directory / "case.json").write_text(json.dumps(data))
-    done = subprocess.run(command("rerun", directory, "--quiet"), capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert "not the same: " in done.stdout
+    with pytest.raises(SystemExit) as stop:
+        main(["rerun", str(directory), "--quiet"])
+    assert stop.value.code == 1
+    assert "not the same: " in capsys.readouterr().out
