@@ -1,4 +1,7 @@
-"""Shape functions of four nodes an axis, the most there may be, at every face of the domain."""
+"""Shape functions of four nodes an axis, the most there may be, at every face of the domain.
+
+In three dimensions their kernels take longer to compile than all of these tests to run: for the slow run.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,11 @@ from mpmkit.registry import Registered, Registry, installed
 SPACES = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}
 FACES = ["open", "slip", "symmetry", "stick", "periodic", {"kind": "friction", "coefficient": 0.4}]
 DX, CELLS = 0.1, 6
+
+
+def of_space(space, *values):
+    """Parameters of a test in a space."""
+    return pytest.param(space, *values, marks=pytest.mark.slow if space == "3d" else ())
 
 
 class CubicSplines(ShapeFunction):
@@ -83,10 +91,10 @@ def upper_faces():
         for face in (f"{axis}_max" for axis in axes):
             for kind in FACES:
                 if not (face == "r_max" and kind in ("periodic", "symmetry")):
-                    yield pytest.param(space, face, kind, id=f"{space}-{face}-{kind}")
+                    yield of_space(space, face, kind)
 
 
-@pytest.mark.parametrize(("space", "face", "kind"), list(upper_faces()))
+@pytest.mark.parametrize(("space", "face", "kind"), list(upper_faces()), ids=str)
 def test_every_node_that_a_particle_on_a_face_touches_is_stored(space, face, kind):
     """The vectors that P2G and G2P read and write are not checked against the ends of the arrays."""
     simulation, axis = cube_at(face, kind, space)
@@ -106,7 +114,9 @@ def test_every_node_that_a_particle_on_a_face_touches_is_stored(space, face, kin
 
 
 @pytest.mark.parametrize("kind", [kind for kind in FACES if kind not in ("periodic", "open")], ids=str)
-@pytest.mark.parametrize(("space", "axis"), [(s, a) for s, axes in SPACES.items() for a in axes if a != "r"])
+@pytest.mark.parametrize(
+    ("space", "axis"), [of_space(s, a) for s, axes in SPACES.items() for a in axes if a != "r"]
+)
 def test_upper_and_lower_faces_are_mirror_images(space, axis, kind):
     """A block that is thrown at the one and one that is thrown at the other."""
     velocities = []

@@ -14,7 +14,7 @@ from mpmkit.solver.memory import expected_particles
 from mpmkit.solver.simulation import Simulation
 
 CASES = Path(__file__).parent.parent / "cases"
-COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}', "until=1.0"]
+COARSE = ["grid.cell_size=0.01", 'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}', "until=0.6"]
 SCENES = {
     "split": COARSE,
     "sound that follows": [*COARSE, 'bodies.0.material.sound_speed={"mach": 0.1}'],

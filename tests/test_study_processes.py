@@ -51,7 +51,7 @@ def scratch(tmp_path, monkeypatch):
 
 
 def test_a_worker_that_is_killed_loses_no_member(tmp_path, scratch):
-    given = study(vary={"until": [3.0, 3.1]})
+    given = study(vary={"until": [1.0, 1.1]})
     members, store = members_of(given), Store(tmp_path / "out")
     store.open(given)
     killed = []
@@ -69,7 +69,7 @@ def test_a_worker_that_is_killed_loses_no_member(tmp_path, scratch):
     assert not multiprocessing.active_children()
     dataset = collect(given, members, store)
     assert dataset.fate.values.tolist() == ["finished", "finished"]
-    assert dataset.simulated_time.values == pytest.approx([3.0, 3.1])
+    assert dataset.simulated_time.values == pytest.approx([1.0, 1.1])
 
 
 def test_a_member_that_kills_its_process_each_time_is_given_up_and_no_other(tmp_path, scratch, monkeypatch):

@@ -125,9 +125,15 @@ ROOMS = {
 }
 
 
+def rooms_and_shapes():
+    """Kernels of four nodes an axis in 3-D, which take long to compile, are for the slow run."""
+    for name, shape in itertools.product(ROOMS, ["cpgimp", "linear", "cubic-splines"]):
+        large = ROOMS[name][0] == "3d" and shape == "cubic-splines"
+        yield pytest.param(name, shape, marks=pytest.mark.slow if large else ())
+
+
 @pytest.mark.usefixtures("each_number_of_threads")
-@pytest.mark.parametrize("shape", ["cpgimp", "linear", "cubic-splines"])
-@pytest.mark.parametrize("name", ROOMS)
+@pytest.mark.parametrize(("name", "shape"), list(rooms_and_shapes()))
 def test_touched_nodes(name, shape):
     """Particles in disorder, some close to walls and some with weight on them: the marks of plain NumPy."""
     space, faces = ROOMS[name]

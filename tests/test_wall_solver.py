@@ -441,3 +441,36 @@ def test_a_plate_that_drags_a_fluid_creates_no_energy():
     balance = simulation.guards.balance
     assert simulation.walls_work > 0.1
     assert balance.created <= 1e-9 * simulation.walls_work
+
+
+# --- Beside a face of the grid ------------------------------------------------------------------------------
+
+HOLDS = pytest.mark.xfail(
+    reason="a face that holds its nodes goes on holding those that a moving wall has come over", strict=True
+)
+
+
+@pytest.mark.parametrize(
+    ("face", "contact", "gap"),
+    [
+        ("slip", "slip", 0.0),
+        ("slip", "slip", 5e-5),
+        ("slip", "stick", 0.0),
+        pytest.param("slip", "stick", 5e-5, marks=HOLDS),
+        pytest.param("stick", "slip", 0.0, marks=HOLDS),
+        pytest.param("symmetry", "slip", 0.0, marks=HOLDS),
+    ],
+)
+def test_a_piston_that_starts_at_a_face_throws_nothing(face, contact, gap):
+    """The free end of what it pushes moves at no more than twice its speed, as in any impact.
+
+    Found by the fuzz: beside a held node the wall's velocity has to come from the next one alone, of which
+    the wall's place has a small part, and which got 1/part times as fast.
+    """
+    motion = {"kind": "velocity", "velocity": [0.5, 0.0]}
+    piston = wall([-0.5 - gap, 0.0], [1.0, 0.0], contact, motion=motion)
+    block = {"lower": (-0.5, 0.0), "upper": (-0.2, 0.2), "faces": {"x_min": face}, "gravity": [0.0, 0.0]}
+    simulation = simulated({"piston": piston}, **block)
+    for _ in range(19):
+        simulation.advance()
+        assert simulation.particles.velocity[:, 0].max() < 1.1

@@ -8,64 +8,19 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+from fuzz_values import SCHEMA, logarithmic, parameters, resolve, value_of
+from fuzz_walls import Block, walls
 from hypothesis import strategies as st
 
-from mpmkit.case import case_schema, parse_case
+from mpmkit.case import parse_case
 from mpmkit.case.plugins import SCHEME
 from mpmkit.registry import installed
 from mpmkit.spaces import SPACES
 
-SCHEMA = case_schema(installed())
 ROOM = 2
 """Cells between a body and an open face: farther than three steps lead."""
 CLOSED = ("slip", "stick", "symmetry", {"kind": "friction", "coefficient": 0.3})
-DECADES = {"Pa": (0, 5), "Pa s": (-3, 3), "Pa s^n": (-3, 3), "s": (-2, 3), "1/s": (-2, 3), "kg/m^3": (1, 4)}
-"""Powers of ten between which a parameter of a unit is drawn; others are of the order of one."""
-
-
-def logarithmic(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers of four digits between two powers of ten."""
-    return st.floats(low, high).map(lambda power: float(f"{10**power:.4g}"))
-
-
-def resolve(node: dict[str, Any]) -> dict[str, Any]:
-    while "$ref" in node:
-        node = SCHEMA["$defs"][node["$ref"].rsplit("/", 1)[1]]
-    return node
-
-
-def value_of(node: dict[str, Any]) -> st.SearchStrategy[Any]:
-    """What a parameter may be, from its schema."""
-    node = resolve(node)
-    if "const" in node:
-        return st.just(node["const"])
-    if "enum" in node:
-        return st.sampled_from(node["enum"])
-    options = node.get("anyOf") or node.get("oneOf")
-    if options:
-        carried = {"unit": node["unit"]} if "unit" in node else {}
-        return st.one_of([value_of({**carried, **resolve(option)}) for option in options])
-    if node["type"] == "null":
-        return st.none()
-    if node["type"] == "boolean":
-        return st.booleans()
-    if node["type"] == "object":
-        return parameters(node)
-    least = max(node.get("minimum", -math.inf), node.get("exclusiveMinimum", -math.inf))
-    most = min(node.get("maximum", math.inf), node.get("exclusiveMaximum", math.inf))
-    decades = DECADES.get(node.get("unit", "1"), (-1, 0.5))
-    drawn = logarithmic(*decades).filter(lambda x: least < x < most)
-    return st.one_of(drawn, st.just(float(least))) if node.get("minimum") == least else drawn
-
-
-@st.composite
-def parameters(draw: st.DrawFn, node: dict[str, Any], but: tuple[str, ...] = ()) -> dict[str, Any]:
-    """An object of a schema: what must be there, and some of the rest."""
-    found = {}
-    for key, rule in node["properties"].items():
-        if key not in but and (key in node.get("required", ()) or draw(st.booleans())):
-            found[key] = draw(value_of(rule))
-    return found
 
 
 def plugins(kind: str) -> st.SearchStrategy[Any]:
@@ -91,8 +46,8 @@ def materials(draw: st.DrawFn, weightless: bool) -> dict[str, Any]:
 
 
 @st.composite
-def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
-    """A scene of one or two bodies on a few cells that must run."""
+def valid_cases(draw: st.DrawFn, walled: bool | None = None) -> dict[str, Any]:
+    """A scene of one or two bodies on a few cells that must run; with walls, without, or either."""
     space = draw(st.sampled_from(sorted(SPACES)))
     axes, radial = SPACES[space].axes, SPACES[space].radial
     cell = draw(logarithmic(-3, 1))
@@ -145,7 +100,19 @@ def valid_cases(draw: st.DrawFn) -> dict[str, Any]:
     if draw(st.booleans()):
         case["output"]["particle_history"] = ["position", "stress"]
     _slower_than_sound(case, cell * sum(size))
+    if draw(st.booleans()) if walled is None else walled:
+        extent = np.array([*size[:-1], size[-1] * (1 + two)])
+        lower, until = cell * np.array(corner, dtype=float), case["until"]
+        block = Block(space, lower, lower + cell * extent, cell, until, _slowest_wave(case) / 10)
+        case["walls"] = draw(walls(block))
     return case
+
+
+def _slowest_wave(case: dict[str, Any]) -> float:
+    """m/s, in any of the materials."""
+    parsed = parse_case(case)
+    materials = [body.material for body in parsed.bodies]
+    return min(m.constitutive_law.wave_speed(m.density, parsed.sound_speed(m)) for m in materials)
 
 
 def _slower_than_sound(case: dict[str, Any], height: float) -> None:
@@ -283,11 +250,14 @@ def parent(data: Any, path: tuple) -> Any:
 
 
 @st.composite
-def mutants(draw: st.DrawFn) -> dict[str, Any]:
-    """A valid case with one to three of its entries replaced, removed or added; some are still valid."""
-    data = copy.deepcopy(draw(valid_cases()))
-    for _ in range(draw(st.integers(1, 3))):
-        here = sorted(places(data), key=str)
+def mutants(draw: st.DrawFn, walled: bool | None = None) -> dict[str, Any]:
+    """A valid case with one to three of its entries replaced, removed or added; some are still valid.
+
+    ``walled``: as for valid cases; with walls only these change, or nothing does.
+    """
+    data = copy.deepcopy(draw(valid_cases(walled)))
+    for _ in range(draw(st.integers(0 if walled else 1, 3))):
+        here = sorted((p for p in places(data) if not walled or p[0] == "walls"), key=str)
         if not here:
             break
         path = draw(st.sampled_from(here))

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import sys
+import tempfile
 import time
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
@@ -38,6 +40,8 @@ quick = settings(
     max_examples=60, derandomize=True, deadline=None, database=None,
     suppress_health_check=list(HealthCheck),
 )  # fmt: skip
+few = settings(quick, max_examples=20)
+"""Of what starts a run each time."""
 long = settings(quick, max_examples=THOUSANDS, derandomize=False)
 watched: dict = {"on": False, "done": [], "inside": ""}
 
@@ -136,6 +140,45 @@ def survived(data: dict, here: Path) -> None:
     assert {path.name for path in here.iterdir()} <= {"case.json"}
 
 
+def ended(data: dict, here: Path) -> None:
+    """From the command line, for a few steps: done, refused, or stopped by a guard that leaves its run."""
+    if (shortened := _shortened(data)) is None:
+        return
+    platform.processor()  # it starts a process, and keeps what that says: a run writes it down
+    with tempfile.TemporaryDirectory(dir=here) as place:
+        directory = Path(place)
+        (directory / "case.json").write_text(json.dumps(shortened), encoding="utf-8")
+        with nothing_done(directory, but=("pickle.find_class",)):
+            arguments = ("run", f"{directory}/case.json", "--quiet", "--threads", "1")
+            status, lines = command(*arguments, "--out", f"{directory}/out")
+        if status == 2:
+            require_sentence(status, lines)
+            assert [path.name for path in directory.iterdir()] == ["case.json"]
+            return
+        assert status in (0, 3), (status, lines)
+        assert "Traceback" not in "".join(lines)
+        kept = {path.name for path in (directory / "out").iterdir()}
+        assert {"case.json", "history.nc", "summary.json", "run.log"} <= kept
+        summary = json.loads((directory / "out/summary.json").read_text())
+        assert (summary["stopped_because"] == "finished") == (status == 0), summary
+        if status == 3:
+            assert "stopped at step" in lines[-1]
+
+
+def _shortened(data: dict) -> dict | None:
+    """The case up to five of its first steps, or as it is if it cannot be set up; None if it is too large."""
+    try:
+        case = parse_case(data)
+        require_memory(case)
+        if expected_particles(case) >= MOST:
+            return None
+        simulation = Simulation(case)
+        simulation.choose_time_step()
+    except MpmkitError:
+        return data
+    return data | {"until": min(data["until"], 5 * simulation.time_step), "output": {"report": False}}
+
+
 def text_survived(text: bytes, here: Path) -> None:
     (here / "case.json").write_bytes(text)
     begin = time.monotonic()
@@ -154,7 +197,7 @@ def text_survived(text: bytes, here: Path) -> None:
 # --- A few, always the same
 
 
-@given(valid_cases())
+@given(valid_cases(walled=False))
 @quick
 def test_valid_cases_run_three_steps(data):
     with np.errstate(all="ignore"):
@@ -172,6 +215,13 @@ def test_invalid_cases_are_refused_in_one_sentence(here, data):
 def test_mutants_are_refused_or_run(here, data):
     with np.errstate(all="ignore"):
         survived(data, here)
+
+
+@given(data=mutants(walled=True))
+@few
+def test_cases_with_walls_end_as_they_should(here, data):
+    with np.errstate(all="ignore"):
+        ended(data, here)
 
 
 @given(text=broken_texts())
@@ -226,7 +276,7 @@ def test_texts_are_nothing_but_texts(here, text):
 
 
 @pytest.mark.slow
-@given(valid_cases())
+@given(valid_cases(walled=False))
 @long
 def test_thousands_of_valid_cases_run_three_steps(data):
     with np.errstate(all="ignore"):
@@ -246,6 +296,14 @@ def test_thousands_of_invalid_cases_are_refused_in_one_sentence(here, data):
 def test_thousands_of_mutants_are_refused_or_run(here, data):
     with np.errstate(all="ignore"):
         survived(data, here)
+
+
+@pytest.mark.slow
+@given(data=mutants(walled=True))
+@long
+def test_thousands_of_cases_with_walls_end_as_they_should(here, data):
+    with np.errstate(all="ignore"):
+        ended(data, here)
 
 
 @pytest.mark.slow

@@ -21,7 +21,6 @@ from mpmkit.errors import GuardStop
 pytestmark = pytest.mark.section(5)
 
 LENGTH, MODULUS, DENSITY, SPEED, UNTIL = 25.0, 100.0, 1.0, 0.1, 100.0
-SLOW_ORDERS = [pytest.param(order, marks=pytest.mark.slow) for order in ("usf", "musl")]
 ENERGY = DENSITY * SPEED**2 * LENGTH / 4  # a unit of cross-section
 TABLE = {
     (13, 1, "linear"): {"usf": 1.0018, "usl": 0.9955, "musl": 0.9982},
@@ -113,7 +112,8 @@ def test_step_period_and_initial_energy(validate):
         validate(f"Bar: {quarters}/4 of the period", zero, close_to(2.5 * quarters, rel=5e-3), unit="s")
 
 
-@pytest.mark.parametrize("order", [*SLOW_ORDERS, "usl"])
+@pytest.mark.slow
+@pytest.mark.parametrize("order", ["usf", "musl", "usl"])
 def test_energy_with_cpgimp_at_50_cells(validate, order):
     ratio, largest, _ = vibrate(50, 2, "cpgimp", order)
     name = energy_after("50 cells, 2 particles, cpGIMP", order)
@@ -144,9 +144,10 @@ def test_usl_with_linear_functions_blows_up_where_cells_are_crossed(validate):
     validate(name, when, close_to(1.5, abs=0.1), unit="s")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("order", "low", "high"),
-    [pytest.param("usf", 1.003, 1.02, marks=pytest.mark.slow), ("musl", 0.985, 0.998)],
+    [("usf", 1.003, 1.02), ("musl", 0.985, 0.998)],
 )
 def test_cell_crossing_with_linear_functions_is_noise(validate, order, low, high):
     """Here two codes agree in sign and size alone (1.0147 and 0.9951 in the table, 1.0076 and 0.9937 found).

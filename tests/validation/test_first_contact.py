@@ -18,7 +18,7 @@ import pytest
 from bands import above, below, close_to
 from clock import at
 from test_faces import DX, RELEASING, SOFT, G, mean_velocity, rub, scene
-from test_hydrostatic import SETTLED, column, settle
+from test_hydrostatic import ONE_FAST, at_rest
 from test_slump import ROOT, Slump, cells
 
 import mpmkit
@@ -207,10 +207,10 @@ def test_a_wall_lets_go_in_free_fall(validate, wall):
 # --- What rests
 
 
-@pytest.mark.parametrize("space", ["plane-strain", "axisymmetric"])
+@pytest.mark.parametrize("space", ONE_FAST)
 def test_contact_does_not_flicker_at_rest(validate, space):
     """A column in a tube, touching floor and walls, in 1000 steps once it is at rest."""
-    simulation = settle(column(space, cells=10), 3 * SETTLED)
+    simulation = at_rest(space)
     window = simulation.operations.window
     before, changes = window.nodes[:, CONTACT].copy(), 0
     for _ in range(1000):

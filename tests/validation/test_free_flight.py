@@ -90,8 +90,9 @@ def test_wobbling_ball_keeps_mass_and_momentum(validate, space, order):
     scale = float(np.sum(p.mass * np.linalg.norm(p.velocity, axis=1)))
     kept = slice(1, None) if space == "axisymmetric" else slice(None)
     strain = []
-    for _ in range(1000 if space != "3d" else 200):
-        simulation.advance()
+    for _ in range(100 if space != "3d" else 20):
+        for _ in range(10):
+            simulation.advance()
         strain.append(simulation.measures(p)["strain_energy"])
     end = simulation.measures(p)
     assert max(strain) > 0.001 * start["kinetic_energy"]
