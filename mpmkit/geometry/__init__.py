@@ -6,6 +6,7 @@ from pydantic import Field
 
 from .base import Shape
 from .box import Box
+from .contour import contour
 from .cylinder import Cylinder
 from .distance import HalfSpace, Inverted, Solid
 from .frustum import Frustum
@@ -41,6 +42,7 @@ __all__ = [
     "Shape",
     "Solid",
     "Sphere",
+    "contour",
     "expected_count",
     "sample",
     "shared_volume",
