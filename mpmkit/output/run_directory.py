@@ -19,7 +19,7 @@ from .wall_frames import wall_frame_files
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
-PICTURES = ("outline", "spread_and_height", "energies")
+PICTURES = ("outline", "spread_and_height", "energies", "wall_forces")
 """Names of the pictures of a report, without their ending."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
