@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..case.faces import Stick
 from ..case.model import Case, Face
+from .lift import lift_start
 
 FLOORS = {
     "slip": "free slip, so that it does not hold the material back",
@@ -30,7 +31,15 @@ def setting(case: Case) -> list[str]:
         return said
     if case.walls:
         names = ", ".join(f"walls.{name}" for name in case.walls)
-        said.append(f"release: from t = 0 on the material is held by {names} alone; T500 counts from t = 0")
+        lifted = lift_start(case)
+        later = (
+            f", and t500_from_lift from the start of the lift, t = {lifted:.4g} s"
+            if lifted is not None and lifted > 0
+            else ""
+        )
+        said.append(
+            f"release: from t = 0 on the material is held by {names} alone; T500 counts from t = 0{later}"
+        )
     else:
         said.append(
             "release: the material is free from t = 0 on, at once; a T500 measured in a laboratory also "
