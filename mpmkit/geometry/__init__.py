@@ -11,7 +11,7 @@ from .cylinder import Cylinder
 from .distance import HalfSpace, Inverted, Solid
 from .frustum import Frustum
 from .mesh import Mesh
-from .motion import AnyMotion, Rotation
+from .motion import AnyMotion, Motion, Rotation
 from .moving import MovingSolid
 from .overlap import shared_volume
 from .sampling import Sample, expected_count, sample
@@ -36,6 +36,7 @@ __all__ = [
     "HalfSpace",
     "Inverted",
     "Mesh",
+    "Motion",
     "MovingSolid",
     "Rotation",
     "Sample",

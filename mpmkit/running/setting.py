@@ -1,10 +1,11 @@
-"""What a case takes for granted, said before a run: how the floor holds the material, and when it is free."""
+"""What a case takes for granted, said before a run: its floor, its walls, and when the material is free."""
 
 from __future__ import annotations
 
 from ..case.faces import Stick
 from ..case.model import Case, Face
 from .lift import lift_start
+from .wall_words import wall_sentences
 
 FLOORS = {
     "slip": "free slip, so that it does not hold the material back",
@@ -15,10 +16,12 @@ FLOORS = {
 
 
 def setting(case: Case) -> list[str]:
-    """Sentences on the floor and on the release of the material.
+    """Sentences on the floor, on the release of the material, and on the walls."""
+    return [*_floor_and_release(case), *wall_sentences(case)]
 
-    A scene has a floor if gravity pulls towards a closed face of the vertical axis.
-    """
+
+def _floor_and_release(case: Case) -> list[str]:
+    """A scene has a floor if gravity pulls towards a closed face of the vertical axis."""
     pull, axis = float(case.gravity_vector[-1]), case.space_.axes[-1]
     if pull == 0:
         return []
