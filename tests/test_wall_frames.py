@@ -128,6 +128,12 @@ class Waved(Surface):
         return d, normal
 
 
+def test_a_wall_that_has_left_the_domain_is_not_asked_for_its_velocity(drawn):
+    away = {"kind": "velocity", "velocity": [0, 100.0]}
+    frames = drawn(case_of({"bar": body("box", "outside", motion=away)}), 0.0, 0.1)
+    assert [sorted(frame) for frame in frames] == [["bar"], []]
+
+
 @pytest.mark.parametrize("space", ["plane-strain", "3d"])
 def test_a_surface_that_has_only_a_distance_is_drawn(drawn, space):
     case = case_of(

@@ -44,7 +44,7 @@ def contour(
     side = (upper - lower) / count
     cells = _near(distance, np.indices(count).reshape(dim, -1).T, lower, side)
     for _ in range(halvings):
-        if len(cells) << (dim - 1) > MOST:
+        if not 0 < len(cells) << (dim - 1) <= MOST:
             break
         side = side / 2
         halves = (2 * cells[:, None, :] + _corners(dim)).reshape(-1, dim)
@@ -69,10 +69,12 @@ def _march(
     distance: Callable[[np.ndarray], Found], cells: np.ndarray, lower: np.ndarray, side: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     dim = len(lower)
+    if not len(cells):
+        return np.zeros((0, dim)), np.zeros((0, dim), dtype=np.int64)
     corners = (cells[:, None, :] + _corners(dim)).reshape(-1, dim)
     first, number = _distinct(corners)
     places = lower + corners[first] * side
-    d = distance(places)[0] if len(places) else np.zeros(0)
+    d, _ = distance(places)
     number = number.reshape(len(cells), 1 << dim)
     # A cell falls into the dim! simplices whose corners are reached along its axes in each order.
     paths = [np.cumsum([0, *(1 << axis for axis in order)]) for order in permutations(range(dim))]

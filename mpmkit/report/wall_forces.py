@@ -79,7 +79,8 @@ def _chosen(charts: list[Chart]) -> tuple[list[int], int]:
 def _charts(results: RunResults) -> list[Chart]:
     """The charts, without those in which everything is rounding. The first row of a history has no means."""
     force, torque, power = (
-        np.nan_to_num(results.history[f"wall_{name}"].values[1:]) for name in ("force", "torque", "power")
+        np.nan_to_num(results.history[f"wall_{name}"].values[1:], posinf=0.0, neginf=0.0)
+        for name in ("force", "torque", "power")
     )
     axes = [str(axis) for axis in results.history["component"].values]
     about = [str(axis) for axis in results.history["about"].values]

@@ -71,10 +71,11 @@ class WallFrames:
 
     def _draw(self, surface: audit.AuditedSurface, time: float) -> Drawn:
         dim = len(self._lower)
+        nothing = Drawn(np.zeros((0, dim)), np.zeros((0, dim), dtype=np.int64), np.zeros((0, dim)))
         if not surface.present(time):
-            return Drawn(np.zeros((0, dim)), np.zeros((0, dim), dtype=np.int64), np.zeros((0, dim)))
+            return nothing
         points, parts = contour(lambda x: surface.distance(x, time), self._lower, self._upper, self._spacing)
-        return Drawn(points, parts, surface.velocity(points, time))
+        return Drawn(points, parts, surface.velocity(points, time)) if len(points) else nothing
 
 
 def _box(case: Case) -> tuple[np.ndarray, np.ndarray]:
