@@ -10,6 +10,7 @@ import mpmkit
 from mpmkit.contracts import Surface
 from mpmkit.output import Drawn, RunDirectory, WallFrameWriter, read_wall_frame, read_wall_frames
 from mpmkit.output.pvd import read_pvd
+from mpmkit.running.runner import resume
 from mpmkit.running.wall_frames import WallFrames
 from mpmkit.spaces import SPACES
 
@@ -220,3 +221,19 @@ def test_walls_and_particles_of_a_run_have_the_same_times(tmp_path):
         e.time for e in read_pvd(frames / "frames.pvd")
     ]
     assert len(list((frames / "walls").iterdir())) == 1
+
+
+def test_a_run_that_goes_on_has_the_walls_of_one_that_was_not_stopped(tmp_path):
+    turn = {"kind": "rotation", "point": [0.3, 0.2], "rate": 20.0}
+    walls = {"mill": body("box", "outside", motion=turn), "gate": body("box", "outside", vanishes=0.012)}
+    data = case_of(walls, until=0.02).model_dump(mode="json", exclude_unset=True)
+    data["output"] = {"report": False, "frame_interval": 0.004}
+    mpmkit.run(mpmkit.parse_case(data), out=tmp_path / "whole")
+    mpmkit.run(mpmkit.parse_case(data | {"until": 0.01}), out=tmp_path / "stopped")
+    resume(tmp_path / "stopped", until=0.02)
+    whole, stopped = (tmp_path / name / "frames" for name in ("whole", "stopped"))
+    files = sorted(path.relative_to(whole) for path in whole.glob("walls/*"))
+    assert files == sorted(path.relative_to(stopped) for path in stopped.glob("walls/*"))
+    assert len(files) == 6 + 2  # the mill at six times; the gate, and that it is gone
+    for name in [*files, "walls.pvd"]:
+        assert (whole / name).read_bytes() == (stopped / name).read_bytes()
