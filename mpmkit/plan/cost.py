@@ -114,7 +114,8 @@ def _growth(simulation: Simulation, seconds: float) -> Growth:
     follows = any(group.mach is not None for group in simulation.particles.groups)
     found = None
     if (case.scheme.splitting or follows or case.walls) and seconds > WORTH_A_PILOT:
-        found = pilot(case, min(PILOT_SECONDS, seconds))
+        # What grows on the way makes the run longer than this, and the end of the flow should be seen.
+        found = pilot(case, min(PILOT_SECONDS, 2 * seconds))
     return found or Growth.unknown()
 
 
