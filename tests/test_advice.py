@@ -245,6 +245,13 @@ def test_nothing_is_known_of_other_scenes():
         assert expected_error(load_case(CASES / f"{name}.json")) is None, name
 
 
+def test_nothing_is_known_of_a_scene_with_walls():
+    """The study has no walls; the lifted mould is its slump otherwise."""
+    lifted = load_case(CASES / "slump_lifted.json")
+    assert expected_error(lifted) is None
+    assert expected_error(lifted.model_copy(update={"walls": {}})) is not None
+
+
 def test_the_study_that_plan_knows_is_the_shipped_one():
     study = json.loads((files("mpmkit.plan") / "slump_study.json").read_text(encoding="utf-8"))
     shipped = json.loads((CASES / "studies/accuracy_vs_cost.json").read_text(encoding="utf-8"))
@@ -302,7 +309,7 @@ def test_a_film_is_cautioned_of_what_goes_wrong_in_it_and_of_nothing_else():
 
 def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
     monkeypatch.setattr("mpmkit.plan.cost.WORTH_ADVICE", 0.0)
-    monkeypatch.setattr("mpmkit.plan.cost.TRIAL_SECONDS", 0.2)
+    monkeypatch.setattr("mpmkit.plan.trial.TRIAL_SECONDS", 0.2)
     cost = plan(scene(**{"grid.cell_size": 0.02, "grid.domain.z": [0, 0.36], "until": 0.2}), threads=1)
     lines = {line["name"]: line for line in cost["cheaper"]}
     assert {"a quarter", "axisymmetric", "exact yield", "all of these"} <= set(lines)
@@ -315,7 +322,7 @@ def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
 def test_the_commands_run_the_case_as_it_was_asked_for(monkeypatch, tmp_path, capsys):
     """What ``plan`` prints is typed as it stands: other material, other time and all."""
     monkeypatch.setattr("mpmkit.plan.cost.WORTH_ADVICE", 0.0)
-    monkeypatch.setattr("mpmkit.plan.cost.TRIAL_SECONDS", 0.05)
+    monkeypatch.setattr("mpmkit.plan.trial.TRIAL_SECONDS", 0.05)
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "a case.json"
     coarse = {"grid.cell_size": 0.02, "grid.domain.z": [0, 0.36], "grid.faces": {"z_min": "slip"}}

@@ -83,7 +83,7 @@ def test_what_has_a_floor_or_does_not_reach_it_is_not_warned(case):
 
 
 def test_plan_and_run_say_it_before_the_fall(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("mpmkit.plan.cost.TRIAL_SECONDS", 0.01)
+    monkeypatch.setattr("mpmkit.plan.trial.TRIAL_SECONDS", 0.01)
     file = tmp_path / "c.json"
     case = scene(BLOCK, until=0.4).model_dump(mode="json", exclude_unset=True)
     file.write_text(json.dumps(case))

@@ -10,11 +10,13 @@ import xarray
 from test_cli import status
 
 import mpmkit
+from mpmkit.running.lift import from_lift, lift_start
 from mpmkit.running.milestones import LOOKS, Milestones
 from mpmkit.running.setting import setting
 from mpmkit.solver.simulation import Simulation
 
 CASES = Path(__file__).parents[1] / "cases"
+LIFTED = CASES / "slump_lifted.json"
 CAKE = {
     "name": "cake",
     "space": "axisymmetric",
@@ -234,5 +236,107 @@ class TestWhatIsSaid:
         )
 
     def test_a_mould_is_named_and_is_no_release_at_once(self):
-        said = setting(mpmkit.load_case(Path(__file__).parents[1] / "cases/slump_lifted.json"))
-        assert said[1].startswith("release: from t = 0 on the material is held by walls.mould alone")
+        said = setting(mpmkit.load_case(LIFTED))
+        held = "release: from t = 0 on the material is held by walls.mould alone; T500 counts from t = 0"
+        assert held in said
+
+    def test_a_mould_that_is_lifted_later_is_said_to_count_from_there(self):
+        case = mpmkit.load_case(LIFTED, ["walls.mould.surface.motion.start=0.5"])
+        assert any(
+            line.endswith("T500 counts from t = 0, and t500_from_lift from the start of the lift, t = 0.5 s")
+            for line in setting(case)
+        )
+
+
+LID = {"kind": "plane", "point": [0, 0.11], "normal": [0, -1]}
+
+
+def rising(**motion):
+    """A lid above the cake that moves, and so is taken for a mould."""
+    motion = {"kind": "velocity", "velocity": [0, 0.1]} | motion
+    return CAKE | {"walls": {"lid": {"surface": LID | {"motion": motion}, "contact": "slip"}}}
+
+
+class TestFromTheLift:
+    @pytest.mark.parametrize(
+        ("motion", "start"),
+        [
+            ({"start": 0.03}, 0.03),
+            ({}, 0.0),
+            ({"start": -0.2, "end": -0.15}, None),
+            ({"start": 5.0}, None),
+            ({"velocity": [0, 0.0]}, None),
+        ],
+        ids=["later", "at once", "before the run", "after it", "never"],
+    )
+    def test_the_lift_starts_when_a_wall_begins_to_move(self, motion, start):
+        assert lift_start(mpmkit.parse_case(rising(**motion))) == start
+
+    def test_of_a_table_it_is_where_the_first_displacement_begins(self):
+        table = {"kind": "table", "times": [0.0, 0.07, 0.1], "positions": [[0, 0], [0, 0], [0, 0.02]]}
+        data = CAKE | {"walls": {"lid": {"surface": LID | {"motion": table}, "contact": "slip"}}}
+        assert lift_start(mpmkit.parse_case(data)) == 0.07
+
+    def test_of_two_walls_it_is_the_first(self):
+        data = rising(start=0.05)
+        data["walls"]["other"] = rising(start=0.02)["walls"]["lid"]
+        data["walls"]["still"] = {"surface": LID, "contact": "slip"}
+        assert lift_start(mpmkit.parse_case(data)) == 0.02
+
+    def test_it_does_not_depend_on_the_length_of_the_run(self):
+        data = rising(start=1 / 30)
+        starts = {lift_start(mpmkit.parse_case(data | {"until": until})) for until in (0.2, 0.3, 1.7)}
+        assert len(starts) == 1
+
+    def test_a_case_without_a_moving_wall_has_none(self):
+        assert lift_start(cake()) is None
+        assert lift_start(mpmkit.load_case(LIFTED)) == 0.0
+
+    @pytest.mark.parametrize(
+        ("t500", "lifted", "expected"),
+        [(0.9, 0.3, 0.6), (0.9, 0.0, 0.9), (None, 0.3, None), (0.2, 0.3, None), (0.2, None, None)],
+    )
+    def test_it_is_the_time_since_then(self, t500, lifted, expected):
+        assert from_lift(t500, lifted) == (None if expected is None else pytest.approx(expected))
+
+    def test_both_are_in_the_summary_and_said_where_they_differ(self, tmp_path, capsys):
+        said = {}
+        for start in (0.0, 0.03):
+            (tmp_path / "case.json").write_text(json.dumps(rising(start=start)))
+            out = tmp_path / f"run{start}"
+            assert status("run", str(tmp_path / "case.json"), "--out", str(out)) == 0
+            said[start] = capsys.readouterr().out
+            summary = json.loads((out / "summary.json").read_text())
+            assert summary["t500_from_lift"] == pytest.approx(summary["t500"] - start, abs=1e-12)
+            assert summary["units"]["t500_from_lift"] == "s"
+            attributes = xarray.open_dataset(out / "history.nc").attrs
+            assert attributes["t500_from_lift"] == summary["t500_from_lift"]
+            log = (out / "run.log").read_text()
+            assert ("t500_from_lift = " in log) == (start > 0)
+        assert "T500 from the lift" not in said[0.0]
+        assert f"T500 from the lift       {summary['t500_from_lift']:.3f} s" in said[0.03]
+
+    def test_without_a_mould_it_does_not_apply(self, every_step):
+        assert np.isnan(every_step.attrs["t500_from_lift"])
+        assert every_step.attrs["t500"] > 0
+
+    @pytest.mark.parametrize(
+        ("override", "place", "value"),
+        [
+            ("walls.mould.surface.motion.velocity.1=0.15", ("surface", "motion", "velocity"), [0, 0.15]),
+            ("walls.mould.surface.motion.velocity=[0, 0.1]", ("surface", "motion", "velocity"), [0, 0.1]),
+            ("walls.mould.surface.motion.start=0.5", ("surface", "motion", "start"), 0.5),
+            ("walls.mould.contact=stick", ("contact", "name"), "stick"),
+            ("walls.mould.contact.kind=stick", ("contact", "name"), "stick"),
+        ],
+    )
+    def test_speed_delay_and_contact_of_the_mould_are_set_on_the_command_line(self, override, place, value):
+        found = mpmkit.load_case(LIFTED, [override]).walls["mould"]
+        for name in place:
+            found = getattr(found, name)
+        assert found == value
+
+    def test_a_coulomb_mould_is_set_by_two_options(self):
+        options = ["walls.mould.contact=coulomb", "walls.mould.contact.coefficient=0.2"]
+        contact = mpmkit.load_case(LIFTED, options).walls["mould"].contact
+        assert (contact.name, contact.coefficient) == ("coulomb", 0.2)

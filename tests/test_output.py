@@ -301,8 +301,10 @@ class TestSummary:
 
     def test_keys_and_values(self):
         summary = self.summary(small_history())
-        keys = "t500 final_spread final_slump final_height final_spread_rate at_rest_since simulated_time "
-        keys += "particles steps wall_time particle_steps_per_second stopped_because plugins units"
+        keys = "t500 t500_from_lift final_spread final_slump final_height final_spread_rate at_rest_since "
+        keys += (
+            "simulated_time particles steps wall_time particle_steps_per_second stopped_because plugins units"
+        )
         assert list(summary) == keys.split()
         assert summary["t500"] == 0.15
         assert summary["at_rest_since"] is None

@@ -5,19 +5,36 @@ import math
 import tracemalloc
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.plan import cost, plan
-from mpmkit.solver.memory import PASSING, bytes_per_particle, expected_bytes, expected_particles, window_nodes
+from mpmkit.solver.memory import (
+    PASSING,
+    bytes_per_particle,
+    expected_bytes,
+    expected_particles,
+    wall_bytes,
+    window_nodes,
+)
 from mpmkit.solver.simulation import Simulation
 
 CASES = Path(__file__).parent.parent / "cases"
+CONE = {"kind": "frustum", "bottom_radius": 0.1, "top_radius": 0.05, "height": 0.3}
+TWO = {
+    "mould": {
+        "surface": {"kind": "body", "shape": CONE, "side": "inside", "thickness": 0.02},
+        "contact": "slip",
+    },
+    "plate": {"surface": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}, "contact": "stick"},
+}
+"""Walls of three dimensions."""
 
 
 def test_the_paper_s_scene_is_planned_as_the_paper_has_it(monkeypatch):
     """Three of its steps, and no cheaper models: they have tests of their own, on scenes that cost less."""
-    monkeypatch.setattr(cost, "TRIAL_SECONDS", 0.0)
+    monkeypatch.setattr("mpmkit.plan.trial.TRIAL_SECONDS", 0.0)
     monkeypatch.setattr(cost, "WORTH_ADVICE", math.inf)
     ferreira = plan(load_case(CASES / "slump_ferreira.json"))
     assert ferreira["particles"] == pytest.approx(351_860, rel=1e-3)
@@ -96,6 +113,34 @@ def test_expected_memory_has_room_for_a_redistribution(file):
     peak = peaks[-1]
     estimate = expected_bytes(case, n) - expected_bytes(plain, n)
     assert peak < estimate < 1.5 * peak
+
+
+@pytest.mark.parametrize(
+    ("file", "overrides"),
+    [
+        ("slump_lifted.json", []),
+        ("slump_lifted.json", ["walls.mould.surface.motion.start=0.1", "grid.cell_size=0.01"]),
+        ("slump_quarter.json", [f"walls={json.dumps(TWO)}"]),
+    ],
+)
+def test_expected_memory_has_room_for_the_nodes_of_walls(file, overrides):
+    case = load_case(CASES / file, ["grid.domain.z=[0, 0.31]", *overrides])
+    simulation = Simulation(case)
+    simulation.advance()
+    held = 0
+    for wall in simulation.operations.walls.walls:
+        arrays = [*vars(wall.near).values(), *wall.near.memory.values()]
+        held += sum({id(owner(a)): owner(a).nbytes for a in arrays if isinstance(a, np.ndarray)}.values())
+    assert held < wall_bytes(case) < 1.6 * held
+    plain = expected_bytes(case.model_copy(update={"walls": {}}), 1000)
+    assert expected_bytes(case, 1000) == pytest.approx(plain + wall_bytes(case), rel=1e-6)
+
+
+def owner(array):
+    """The array whose memory an array shows a part of."""
+    while isinstance(array.base, np.ndarray):
+        array = array.base
+    return array
 
 
 def test_a_case_with_a_redistribution_is_planned():

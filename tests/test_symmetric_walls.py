@@ -76,3 +76,26 @@ def test_a_tray_has_a_quarter_and_does_not_turn():
 def test_a_drum_that_turns_drags_and_mirrors_nothing():
     turning = {"kind": "rotation", "point": [0.1, 0.2, 0], "axis": [0, 0, 1], "rate": 1.0}
     assert models(MOULD | {"motion": turning}) == (None, None)
+
+
+def test_a_cone_as_a_mould_turns_about_its_axis():
+    cone = {
+        "kind": "frustum",
+        "bottom_radius": 0.1,
+        "top_radius": 0.05,
+        "height": 0.3,
+        "base": [0.1, 0.2, 0.0],
+    }
+    quarter, turned = models(MOULD | {"shape": cone})
+    assert quarter is not None
+    assert turned.walls["wall"].surface.shape.bottom_radius == 0.1
+
+
+@pytest.mark.parametrize("spell", [{}, {"start": 0.07, "end": 0.09}], ids=["always", "for a moment"])
+@pytest.mark.parametrize("shape", ["drum", "vane"])
+def test_what_turns_is_not_symmetric_however_short_it_turns(shape, spell):
+    """Between 0 and 0.5 s a wall is looked at in nine moments, and once in each motion between them."""
+    turning = {"kind": "rotation", "point": [0.1, 0.2, 0], "axis": [0, 0, 1], "rate": 1.0} | spell
+    vane = {"kind": "box", "lower": [0.0, 0.18, -0.02], "upper": [0.2, 0.22, 0.3]}
+    of_vane = {"kind": "body", "shape": vane, "side": "outside"}
+    assert models((MOULD if shape == "drum" else of_vane) | {"motion": turning}) == (None, None)

@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 from rich.table import Column
 
 from ..output.log import RECORD
-from ..output.summary import state_at_end
+from ..output.summary import lifted_later, state_at_end
 from .duration import duration
 from .printing import echo
 
@@ -32,6 +32,7 @@ NARROWEST_BAR, WIDEST_BAR = 10, 40
 PERCENTAGE = len("100% ")
 FIGURES = (
     ("t500", "T500", 1, " s", 3),
+    ("t500_from_lift", "T500 from the lift", 1, " s", 3),
     ("final_spread", "final spread", 1e3, " mm", 1),
     ("final_slump", "final slump", 1e3, " mm", 1),
     ("final_height", "final height", 1e3, " mm", 1),
@@ -156,7 +157,8 @@ def show_summary(directory: Path) -> None:
     """The figures of ``summary.json``, and where everything lies, on standard output."""
     summary = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
     width = max(len(label) for _, label, *_ in FIGURES)
-    for key, label, scale, unit, digits in FIGURES:
+    shown = [figure for figure in FIGURES if figure[0] != "t500_from_lift" or lifted_later(summary)]
+    for key, label, scale, unit, digits in shown:
         value = summary[key]
         figure = "–" if value is None else f"{value * scale:,.{digits}f}{unit}"
         if key == "final_spread" and (state := state_at_end(summary)) is not None:

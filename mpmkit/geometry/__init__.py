@@ -6,11 +6,12 @@ from pydantic import Field
 
 from .base import Shape
 from .box import Box
+from .contour import contour
 from .cylinder import Cylinder
 from .distance import HalfSpace, Inverted, Solid
 from .frustum import Frustum
 from .mesh import Mesh
-from .motion import AnyMotion, Rotation
+from .motion import AnyMotion, Motion, Rotation
 from .moving import MovingSolid
 from .overlap import shared_volume
 from .sampling import Sample, expected_count, sample
@@ -35,12 +36,14 @@ __all__ = [
     "HalfSpace",
     "Inverted",
     "Mesh",
+    "Motion",
     "MovingSolid",
     "Rotation",
     "Sample",
     "Shape",
     "Solid",
     "Sphere",
+    "contour",
     "expected_count",
     "sample",
     "shared_volume",

@@ -48,6 +48,10 @@ class Motion(BaseModel):
     def fastest(self, t0: float, t1: float, hull: Hull) -> float:
         """Upper bound, m/s, between two times, of the velocity in a body with a ``hull``, see ``Solid``."""
 
+    @abstractmethod
+    def in_words(self, axes: tuple[str, ...]) -> str:
+        """What it does, in words that follow the name of a wall; ``axes`` are those of the space."""
+
     def problem(self, space: Space) -> str | None:
         """Why it cannot be in a space, in words that follow "the motion's"; None if it can."""
         for field, vector in self.vectors().items():
@@ -88,6 +92,10 @@ class Spell(Motion):
         """Part of the motion that is done at a time, s."""
         return max(0.0, min(t, math.inf if self.end is None else self.end) - self.start)
 
+    def _when(self) -> str:
+        """From when to when it moves, in words."""
+        return f"from t = {self.start:g} s {'on' if self.end is None else f'to {self.end:g} s'}"
+
     def _moves(self, t0: float, t1: float) -> bool:
         """Whether it moves at some time of [t0, t1]."""
         return t1 >= self.start and (self.end is None or t0 < self.end)
@@ -101,6 +109,9 @@ class Uniform(Spell):
 
     def vectors(self) -> dict[str, list[float]]:
         return {"velocity": self.velocity}
+
+    def in_words(self, axes: tuple[str, ...]) -> str:
+        return f"moves at {_along(self.velocity, 'm/s', axes)} {self._when()}"
 
     def displacement(self, t: float) -> np.ndarray:
         return self._elapsed(t) * np.array(self.velocity)
@@ -142,6 +153,10 @@ class Table(Motion):
     def vectors(self) -> dict[str, list[float]]:
         return {f"positions.{number}": position for number, position in enumerate(self.positions)}
 
+    def in_words(self, axes: tuple[str, ...]) -> str:
+        first, last = self.times[0], self.times[-1]
+        return f"moves by a table of {len(self.times)} places from t = {first:g} s to {last:g} s"
+
     def displacement(self, t: float) -> np.ndarray:
         return np.array([np.interp(t, self.times, along) for along in zip(*self.positions, strict=True)])
 
@@ -170,6 +185,10 @@ class Oscillation(Spell):
 
     def vectors(self) -> dict[str, list[float]]:
         return {"amplitude": self.amplitude}
+
+    def in_words(self, axes: tuple[str, ...]) -> str:
+        amplitude = _along(self.amplitude, "m", axes)
+        return f"swings by {amplitude} at {self.frequency:g} Hz {self._when()}"
 
     def displacement(self, t: float) -> np.ndarray:
         angle = 2 * math.pi * self.frequency * self._elapsed(t) + self.phase
@@ -213,6 +232,10 @@ class Rotation(Spell):
             return f"axis is {self.axis}, but in the space {space.name} it is out of the plane: leave it out"
         return super().problem(space)
 
+    def in_words(self, axes: tuple[str, ...]) -> str:
+        direction = "" if self.axis is None else f"the direction ({_numbers(self.axis)}) through "
+        return f"turns at {self.rate:g} rad/s about {direction}({_numbers(self.point)}) m {self._when()}"
+
     def displacement(self, t: float) -> np.ndarray:
         return np.zeros(len(self.point))
 
@@ -242,6 +265,18 @@ class Rotation(Spell):
         """Q = I + sin(α) K + (1 - cos(α)) K², after Rodrigues."""
         angle, K = self.rate * self._elapsed(t), self._generator()
         return np.eye(len(K)) + math.sin(angle) * K + (1 - math.cos(angle)) * (K @ K)
+
+
+def _numbers(values: list[float]) -> str:
+    return ", ".join(f"{value:g}" for value in values)
+
+
+def _along(vector: list[float], unit: str, axes: tuple[str, ...]) -> str:
+    """A vector in words: "0.3 m/s along z", or with a component for each axis."""
+    moving = [(value, axis) for value, axis in zip(vector, axes, strict=True) if value != 0]
+    if len(moving) == 1:
+        return f"{moving[0][0]:g} {unit} along {moving[0][1]}"
+    return f"({_numbers(vector)}) {unit} along ({', '.join(axes)})"
 
 
 def _motion_tag(value: Any) -> str:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import CaseError
 from ..spaces import Space
 from .atomic import cannot_write, replacing
+from .pvd import Entry, read_pvd, write_pvd
 
 LIST_NAME = "frames.pvd"
 _NAME = re.compile(r"frame_\d{6,}\.vtu")
@@ -98,14 +97,7 @@ class FrameWriter:
     def _write_list(self) -> None:
         # Someone may have deleted frames meanwhile: ParaView fails of a list that names them.
         self.frames = {name: t for name, t in self.frames.items() if (self.directory / name).is_file()}
-        root = ET.Element("VTKFile", type="Collection", version="0.1")
-        collection = ET.SubElement(root, "Collection")
-        for name, time in self.frames.items():
-            # repr gives back the very same float when it is read
-            ET.SubElement(collection, "DataSet", timestep=repr(time), group="", part="0", file=name)
-        ET.indent(root)
-        with replacing(self.directory / LIST_NAME) as partial:
-            ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
+        write_pvd(self.directory / LIST_NAME, (Entry(time, name) for name, time in self.frames.items()))
 
 
 def frame_files(directory: Path) -> list[Path]:
@@ -121,15 +113,8 @@ def read_frames(directory: Path) -> list[tuple[float, Path]]:
     Raises:
         CaseError: where the list is not one.
     """
-    path = Path(directory) / LIST_NAME
-    if not path.is_file():
-        return []
-    try:
-        listed = ET.parse(path).getroot().iter("DataSet")
-        frames = [(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in listed]
-    except (ET.ParseError, KeyError, ValueError) as error:
-        raise CaseError(f"'{path}' is not a list of frames: {error}") from error
-    return sorted((time, file) for time, file in frames if file.is_file())
+    directory = Path(directory)
+    return [(entry.time, directory / entry.file) for entry in read_pvd(directory / LIST_NAME)]
 
 
 def read_frame(path: Path) -> dict[str, np.ndarray]:

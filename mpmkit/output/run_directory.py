@@ -13,10 +13,13 @@ from .checkpoints import Checkpoints
 from .copies import Copies
 from .frames import LIST_NAME, frame_files
 from .lock import LOCK_NAME, alone_in
+from .wall_frames import FOLDER as WALLS
+from .wall_frames import LIST_NAME as WALL_LIST
+from .wall_frames import wall_frame_files
 
 PARTIAL = ".*.partial"
 """What a killed process may have left."""
-PICTURES = ("outline", "spread_and_height", "energies")
+PICTURES = ("outline", "spread_and_height", "energies", "wall_forces")
 """Names of the pictures of a report, without their ending."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
@@ -131,8 +134,11 @@ class RunDirectory:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
         written = [self.history, self.summary, *self.path.glob(PARTIAL)]
         pictures = [self.report / f"{name}.png" for name in PICTURES]
-        frames = [*frame_files(self.frames), self.frames / LIST_NAME]
-        for directory, files in ((self.frames, frames), (self.report, pictures)):
+        frames = [*frame_files(self.frames), self.frames / LIST_NAME, self.frames / WALL_LIST]
+        folders = [(self.frames, frames), (self.report, pictures)]
+        if not self.frames.is_symlink():  # else it is the link that goes
+            folders.insert(0, (self.frames / WALLS, wall_frame_files(self.frames)))
+        for directory, files in folders:
             if directory.is_symlink():
                 written.append(directory)
             else:
@@ -141,6 +147,6 @@ class RunDirectory:
             path.unlink(missing_ok=True)
         Checkpoints(self.checkpoints).remove()
         Copies(self.meshes).remove(but=self._keep)
-        for directory in (self.frames, self.report):
+        for directory, _ in folders:
             with suppress(OSError):  # it is not there, or something of the user's is in it
                 directory.rmdir()

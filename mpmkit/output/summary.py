@@ -15,6 +15,7 @@ LEAST_RATE = 1e-5
 """m/s; below it nobody would call it spreading, even if the material moves."""
 UNITS = {
     "t500": "s",
+    "t500_from_lift": "s",
     "final_spread": "m",
     "final_slump": "m",
     "final_height": "m",
@@ -55,6 +56,7 @@ def summarise(
     wall_time: float,
     stopped_because: str,
     plugins: Any,
+    t500_from_lift: float | None = None,
 ) -> dict[str, Any]:
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
@@ -72,10 +74,12 @@ def summarise(
         wall_time: s.
         stopped_because: why the run ended.
         plugins: the plug-ins and their versions.
+        t500_from_lift: time from the start of the lift of a mould to a spread of 500 mm, s.
     """
     arrived = trusted_to_the_end(stopped_because)
     return {
         "t500": t500,
+        "t500_from_lift": t500_from_lift,
         "final_spread": _last(history, "spread_diameter") if arrived else None,
         "final_slump": _last(history, "slump") if arrived else None,
         "final_height": _last(history, "height") if arrived else None,
@@ -95,6 +99,11 @@ def summarise(
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
     """The numbers of a summary by name, as attributes of a dataset; what never happened is not a number."""
     return {name: math.nan if summary[name] is None else summary[name] for name in UNITS}
+
+
+def lifted_later(summary: Mapping[str, Any]) -> bool:
+    """Whether a T500 from the start of the lift is another figure than the one from the start of the run."""
+    return summary.get("t500_from_lift") not in (None, summary.get("t500"))
 
 
 def state_at_end(summary: Mapping[str, Any]) -> str | None:

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
-import time as clock
-from statistics import median
 from typing import Any
 
 from ..case.forewarnings import forewarnings
 from ..case.model import Case
 from ..case.plugins import cautions
-from ..errors import CaseError, GuardStop, PluginStop
+from ..errors import CaseError, GuardStop
 from ..running.threads import possible_threads, using_threads
 from ..solver.memory import checkpoint_bytes, expected_bytes, require_memory
 from ..solver.simulation import Simulation
 from .cheaper import cheaper_models
 from .expectation import expected_error
 from .pilot import Growth, pilot
+from .trial import Trial, trial
 
-TRIAL_SECONDS = 1.0
-"""How long the scene is run to measure its speed on this machine, after one step to compile."""
 PILOT_SECONDS = 10.0
 """How long its coarse copy is run at the most, to see how the cost grows on the way."""
 WORTH_ADVICE = 10.0
@@ -33,8 +30,9 @@ WORTH_A_PILOT = 1.0
 def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
     """Particles, nodes, steps, memory and expected time of a run.
 
-    The time is measured, not guessed: the scene itself is set up and run for about a second, and where
-    particles may be split or the sound speed follows the flow, a coarse copy is run to its end (``pilot``).
+    The time is measured, not guessed: the scene itself is set up and run for about a second. Where particles
+    may be split, the sound speed follows the flow, or there are walls, a coarse copy is run to its end
+    (``pilot``).
 
     Returns:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
@@ -89,8 +87,8 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         raise CaseError(
             f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
         )
-    seconds_per_step, stopped = _trial(simulation)
-    growth = _growth(simulation, case.until / step * seconds_per_step)
+    start = trial(simulation)
+    growth = _growth(simulation, case.until / step * start.step)
     steps = math.ceil(case.until / step * growth.steps)
     at_end = round(particles * growth.last_particles)
     return {
@@ -104,9 +102,9 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
-        "expected_seconds": steps * _mean_seconds(seconds_per_step, particles, growth),
+        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.until / steps),
         "remarks": remarks,
-        "warnings": warnings + stopped,
+        "warnings": warnings + start.stopped,
     }
 
 
@@ -115,39 +113,30 @@ def _growth(simulation: Simulation, seconds: float) -> Growth:
     case = simulation.case
     follows = any(group.mach is not None for group in simulation.particles.groups)
     found = None
-    if (case.scheme.splitting or follows) and seconds > WORTH_A_PILOT:
-        found = pilot(case, min(PILOT_SECONDS, seconds))
-    return found or Growth(1.0, 1.0, 1.0, math.nan, math.nan, of_the_case=False)
+    if (case.scheme.splitting or follows or case.walls) and seconds > WORTH_A_PILOT:
+        # What grows on the way makes the run longer than this, and the end of the flow should be seen.
+        found = pilot(case, min(PILOT_SECONDS, 2 * seconds))
+    return found or Growth.unknown()
 
 
-def _mean_seconds(seconds_per_step: float, particles: int, growth: Growth) -> float:
-    """Seconds a step takes in the mean over a run, a + b N, with N particles: b N is what grows.
+def _mean_seconds(start: Trial, particles: int, growth: Growth, time_step: float) -> float:
+    """Seconds a step takes in the mean over a run, a + b N + c W + d R, with N particles: b N is what grows.
 
-    a, what a step costs whatever the number of particles, is told by the pilot, which has few.
+    a, what a step costs whatever the number of particles, is told by the pilot, which has few. W is what the
+    walls have to do: a mould that is lifted is soon away from the material, and costs nothing from then on.
+    R redistributions are done in a step, as many in a second of the flow as in the pilot.
     """
     if growth.of_the_case:
         return growth.seconds_per_step
-    per_particle = seconds_per_step / particles
+    of_walls, redistributions = start.of_walls, start.redistributions
+    if start.load > 0 and math.isfinite(growth.walls):
+        of_walls *= growth.walls / start.load
+    if math.isfinite(growth.redistributions):
+        redistributions = min(growth.redistributions * time_step, 1.0)
+    per_particle = start.seconds / particles
     if growth.mean_particles < particles / 2:
-        per_particle = (seconds_per_step - growth.seconds_per_step) / (particles - growth.mean_particles)
-        per_particle = min(max(per_particle, 0.0), seconds_per_step / particles)
-    return seconds_per_step + per_particle * particles * (growth.particles - 1.0)
-
-
-def _trial(simulation: Simulation) -> tuple[float, list[str]]:
-    """Seconds a step takes, and a warning if the run was stopped by a guard as early as in the trial."""
-    simulation.advance()  # compiles, or loads what was compiled
-    taken: list[float] = []
-    begin = clock.perf_counter()
-    try:
-        while not taken or (
-            clock.perf_counter() - begin < TRIAL_SECONDS and simulation.time < simulation.case.until
-        ):
-            start = clock.perf_counter()
-            simulation.advance()
-            taken.append(clock.perf_counter() - start)
-    except GuardStop as stop:
-        if not taken or isinstance(stop, PluginStop):
-            raise
-        return median(taken), [f"this run will be {stop}"]
-    return median(taken), []
+        of_pilot = growth.seconds_per_step - growth.seconds_of_parts
+        per_particle = (start.seconds - of_pilot) / (particles - growth.mean_particles)
+        per_particle = min(max(per_particle, 0.0), start.seconds / particles)
+    grown = start.seconds + per_particle * particles * (growth.particles - 1.0)
+    return grown + of_walls + redistributions * start.redistributing

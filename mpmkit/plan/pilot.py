@@ -1,8 +1,8 @@
 """A pilot: the same scene on coarse cells, run to its end to see how its cost grows on the way.
 
-Particles that are split and steps that lengthen or shorten as the material flows cannot be known from the
-scene at rest; but they are the same, in proportion, on cells four or eight times as wide, at a small part of
-the cost.
+Particles that are split, steps that lengthen or shorten as the material flows, and the walls that it touches
+on the way cannot be known from the scene at rest; but they are the same, in proportion, on cells four or
+eight times as wide, at a small part of the cost.
 """
 
 from __future__ import annotations
@@ -15,10 +15,15 @@ from typing import Any
 
 from ..case import parse_case
 from ..case.model import Case
+from ..case.plugins import plugins_of
 from ..case.resolved import resolved
 from ..errors import MpmkitError, PluginStop
+from ..registry import audit
+from ..registry.blame import blaming_plugins
 from ..solver.memory import expected_particles
 from ..solver.simulation import Simulation
+from .part_clock import PartClock
+from .wall_load import load
 
 FEW = {2: 250, 3: 1500}
 """Particles of a pilot, by the number of dimensions, at about the most."""
@@ -39,14 +44,26 @@ class Growth:
     seconds_per_step: float
     mean_particles: float
     """number of particles, the mean over the steps"""
+    seconds_of_parts: float
+    """of them those of walls and redistributions"""
+    walls: float
+    """what its walls had to do, the mean over the steps, see ``wall_load``; as of the case's own cells"""
+    redistributions: float
+    """how many there were in a second of the flow, 1/s"""
     of_the_case: bool
     """whether the pilot was the case itself, so that its seconds are those of the run"""
 
+    @classmethod
+    def unknown(cls) -> Growth:
+        """Nothing grows, as far as is known: without a pilot."""
+        nan = math.nan
+        return cls(1.0, 1.0, 1.0, nan, nan, nan, nan, nan, of_the_case=False)
+
 
 def pilot(case: Case, seconds: float) -> Growth | None:
-    """Run a coarse copy of a case for at most ``seconds``; None if it diverges.
+    """Run a coarse copy of a case for at most ``seconds``; None if it diverges in its first half.
 
-    Where the seconds do not suffice, what was seen up to then stands for the rest.
+    Where the seconds do not suffice, or a guard stops it later, what was seen up to then stands for the rest.
 
     Raises:
         PluginStop: a plug-in is at fault.
@@ -55,26 +72,38 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         coarse = coarser(case)
         simulation = Simulation(coarse)
         simulation.advance()  # loads what must be loaded
-        first_step, first = simulation.time_step, len(simulation.particles)
-        begin, before = clock.perf_counter(), simulation.particle_steps
-        start_steps, start_time = simulation.steps, simulation.time
-        while simulation.time < coarse.until and clock.perf_counter() - begin < seconds:
-            simulation.advance(coarse.until - simulation.time)
-        taken = clock.perf_counter() - begin
     except PluginStop:  # it would fail in the run as well
         raise
     except MpmkitError:
         return None
+    first_step, first = simulation.time_step, len(simulation.particles)
+    begin, before = clock.perf_counter(), simulation.particle_steps
+    start_steps, start_time = simulation.steps, simulation.time
+    parts = PartClock(simulation)
+    wider, walls = coarse.grid.cell_size / case.grid.cell_size, 0.0
+    try:
+        while simulation.time < coarse.until and clock.perf_counter() - begin < seconds:
+            simulation.advance(coarse.until - simulation.time)
+            walls += load(simulation, wider)
+    except PluginStop:
+        raise
+    except MpmkitError:
+        if simulation.time < coarse.until / 2:
+            return None
+    taken = clock.perf_counter() - begin
     steps = simulation.steps - start_steps
     if steps == 0:
         return None
-    mean = (simulation.particle_steps - before) / steps
+    mean, passed = (simulation.particle_steps - before) / steps, simulation.time - start_time
     return Growth(
-        steps=steps / ((simulation.time - start_time) / first_step),
+        steps=steps / (passed / first_step),
         particles=mean / first,
         last_particles=len(simulation.particles) / first,
         seconds_per_step=taken / steps,
         mean_particles=mean,
+        seconds_of_parts=parts.seconds / steps,
+        walls=walls / steps,
+        redistributions=parts.redistributions / passed,
         of_the_case=coarse is case,
     )
 
@@ -83,7 +112,7 @@ def coarser(case: Case) -> Case:
     """The case on cells so wide that it has few particles; the case itself if it has few as it is."""
     dim = case.space_.dim
     times = (expected_particles(case) / FEW[dim]) ** (1 / dim)
-    times = min(times, case.height / COARSEST / case.grid.cell_size)
+    times = min(times, case.height / COARSEST / case.grid.cell_size, _thinnest(case) / case.grid.cell_size)
     if times < 1.25:
         return case
     data = resolved(case)
@@ -93,6 +122,13 @@ def coarser(case: Case) -> Case:
     data["grid"]["domain"] = {axis: _whole(ends, cell_size) for axis, ends in data["grid"]["domain"].items()}
     data["output"] = {"report": False}
     return parse_case(data, source="its pilot")
+
+
+def _thinnest(case: Case) -> float:
+    """Thickness, m, of the thinnest wall, which must hold a cell; infinite where there is none."""
+    with blaming_plugins(plugins_of(case)):
+        surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
+        return min((surface.thickness for surface in surfaces), default=math.inf)
 
 
 def _whole(ends: list[float], cell_size: float) -> list[Any]:

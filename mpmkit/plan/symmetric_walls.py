@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from ..registry.blame import blaming_plugins
 
 POINTS = 400
 TIMES = 9
-"""Between the start and the end of a run; what moves in between and comes back at each is not seen."""
+"""Between the start and the end of a run; where a wall moves between two of them, once more in its motion."""
+HALVINGS = 20
+"""Of the time between two of them, to find a moment at which it moves."""
 ROUNDING = 1e-9
 """Of distances over the extent of the domain, and of velocities over the fastest."""
 Map = Callable[[np.ndarray], np.ndarray]
@@ -55,10 +58,25 @@ def _same(case: Case, other: Case, place: Map, vector: Map) -> bool:
             for name, wall in case.walls.items()
         ]
         return all(
-            _alike(here, there, case, float(time), place, vector)
+            _alike(here, there, case, time, place, vector)
             for here, there in pairs
-            for time in np.linspace(0.0, case.until, TIMES)
+            for time in _moments(here, case.until)
         )
+
+
+def _moments(surface: AuditedSurface, until: float) -> list[float]:
+    """Times, s, at which a wall is looked at."""
+    times = np.linspace(0.0, until, TIMES).tolist()
+    moving = [(a, b) for a, b in pairwise(times) if surface.fastest(a, b) > 0]
+    return times + [_in_motion(surface, a, b) for a, b in moving]
+
+
+def _in_motion(surface: AuditedSurface, before: float, after: float) -> float:
+    """A time at which a wall moves, shortly after the first at which it does, of those between two."""
+    for _ in range(HALVINGS):
+        middle = (before + after) / 2
+        before, after = (before, middle) if surface.fastest(before, middle) > 0 else (middle, after)
+    return after
 
 
 def _alike(

@@ -21,7 +21,7 @@ def write_report(run_directory: Path) -> list[Path]:
         CaseError: where the directory does not hold a run.
         OutputError: where a picture cannot be written.
     """
-    from . import energies, outline, spread_and_height  # matplotlib is loaded only to draw
+    from . import energies, outline, spread_and_height, wall_forces  # matplotlib is loaded only to draw
     from .run_results import read_results
     from .style import DPI, figure_style
 
@@ -32,7 +32,8 @@ def write_report(run_directory: Path) -> list[Path]:
     except OSError as error:
         raise cannot_write(report, error) from error
     written = []
-    for name, picture in zip(PICTURES, (outline, spread_and_height, energies), strict=True):
+    pictures = (outline, spread_and_height, energies, wall_forces)
+    for name, picture in zip(PICTURES, pictures, strict=True):
         with figure_style():
             figure = picture.draw(results)
             if figure is None:

@@ -19,8 +19,11 @@ from .panels import Panels
 from .run_results import RunResults
 from .section import Section, lengths_of, plane_of, section_of
 from .style import BLACK, COLOUR_MAP, GREY, MILLIMETRES
+from .wall_lines import Lines, draw_walls, legend_handles, looks, wall_lines
 
 DEFAULT_TIMES = (0.0, 0.1, 0.2, 0.5)
+AROUND, AROUND_WALLS = 0.04, 0.12
+"""What a panel shows around the material, as a part of its largest side; more where there may be walls."""
 FEWEST_DIGITS, MOST_DIGITS = 3, 12
 """Decimals of a time; more than the fewest only where two panels would bear the same time."""
 
@@ -33,6 +36,7 @@ class Snapshot:
     section: Section
     lengths: dict[str, float]
     """spread and height, m, as far as they are known"""
+    walls: Lines
 
 
 def draw(results: RunResults) -> Figure | None:
@@ -41,18 +45,26 @@ def draw(results: RunResults) -> Figure | None:
         return None
     domain, plane = domain_of(results), plane_of(results)
     snapshots = [
-        Snapshot(time, section_of(path, results, plane, domain), lengths_of(path, results))
+        Snapshot(
+            time,
+            section_of(path, results, plane, domain),
+            lengths_of(path, results),
+            wall_lines(results, time, plane, domain),
+        )
         for time, path in chosen_frames(results)
     ]
     shown = [snapshot.section for snapshot in snapshots if len(snapshot.section)]
     if not shown:
         return None
-    lower, upper = _limits(shown, domain)
+    walls = list(results.case.get("walls") or ())
+    look = looks(walls, walls)
+    lower, upper = _limits(shown, domain, AROUND_WALLS if walls else AROUND)
     panels = Panels(len(snapshots), upper - lower)
     colours, extend = _colours([snapshot.section for snapshot in snapshots], results.stopped_by_guard)
     digits = _digits([snapshot.time for snapshot in snapshots])
     for axes, snapshot in zip(panels.axes, snapshots, strict=True):
         body = _add_section(axes, snapshot.section, colours, domain, results.case["grid"]["cell_size"])
+        draw_walls(axes, snapshot.walls, look)
         if domain.floor is not None:
             axes.axhline(domain.floor * MILLIMETRES, color=BLACK, linewidth=1.5)
         axes.set_xlim(lower[0] * MILLIMETRES, upper[0] * MILLIMETRES)
@@ -62,6 +74,8 @@ def draw(results: RunResults) -> Figure | None:
             note = "nothing in this section"
             axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", color=GREY)
     panels.label(f"{'r' if results.case['space'] == 'axisymmetric' else 'x'} (mm)", "z (mm)")
+    if handles := legend_handles(look, _seen([snapshot.walls for snapshot in snapshots], lower, upper)):
+        panels.legend(handles)
     panels.colour_bar(body, "speed (m/s)", extend)
     where = "" if plane is None else f", section at y = {plane * MILLIMETRES:.4g} mm"
     panels.title(f"{results.title}: shape{where}")
@@ -78,14 +92,26 @@ def chosen_frames(results: RunResults) -> list[tuple[float, Path]]:
     return [results.frames[index] for index in sorted(nearest | {len(times) - 1})]
 
 
-def _limits(sections: list[Section], domain: Domain) -> tuple[np.ndarray, np.ndarray]:
+def _seen(walls: list[Lines], lower: np.ndarray, upper: np.ndarray) -> set[str]:
+    """The walls of which something is within the limits of a panel."""
+    return {
+        name
+        for lines in walls
+        for name, segments in lines.items()
+        if ((segments.min(axis=1) <= upper) & (segments.max(axis=1) >= lower)).all(axis=1).any()
+    }
+
+
+def _limits(sections: list[Section], domain: Domain, around: float) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of a panel, m: around the material, within the domain, down to a floor."""
     lower = np.maximum(np.min([section.lower for section in sections], axis=0), domain.lower)
     upper = np.minimum(np.max([section.upper for section in sections], axis=0), domain.upper)
     if domain.floor is not None:
         lower[1] = domain.floor
-    margin = 0.04 * (upper - lower).max()
-    return lower - margin, upper + margin
+    size = (upper - lower).max()
+    margin = np.full(2, around * size)
+    below = margin if domain.floor is None else np.array([around, AROUND]) * size
+    return lower - below, upper + margin
 
 
 def _colours(sections: list[Section], stopped_by_guard: bool) -> tuple[Normalize, str]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
@@ -25,6 +27,8 @@ PAD = 0.1
 """Room above and below a panel and what is written at it."""
 BAR = 1.0
 """Room for a colour bar at the side."""
+NAME, LINE = 1.6, 0.25
+"""Room across and along for a name in a legend."""
 
 
 class Panels:
@@ -58,6 +62,13 @@ class Panels:
             axes.set_xlabel(horizontal)
         for axes in self.axes[:: self._columns]:
             axes.set_ylabel(vertical)
+
+    def legend(self, handles: Sequence[Artist]) -> None:
+        """Name lines below all panels; the page grows by the room for it."""
+        width, height = self.figure.get_size_inches()
+        columns = max(1, int(width / NAME))
+        self.figure.set_size_inches(width, height + LINE * math.ceil(len(handles) / columns))
+        self.figure.legend(handles=handles, loc="outside lower center", ncols=min(columns, len(handles)))
 
     def colour_bar(self, mappable: ScalarMappable, label: str, extend: str = "neither") -> None:
         """Put the colour bar into an empty place of the grid, or to the right of it."""

@@ -12,7 +12,7 @@ import numpy as np
 import xarray
 
 from ..errors import CaseError
-from ..output import RunDirectory, read_frames
+from ..output import RunDirectory, read_frames, read_wall_frames
 from ..output.netcdf import read_dataset
 from ..output.summary import trusted_rows, trusted_to_the_end
 
@@ -27,6 +27,8 @@ class RunResults:
     """Its rows but for the last of a run that a guard stopped: that one holds what the guard refused."""
     frames: Sequence[tuple[float, Path]]
     """Times, s, and files of the frames, in order of time."""
+    walls: dict[float, dict[str, Path]]
+    """Files of the walls at the times of the frames, s, by name."""
 
     @property
     def title(self) -> str:
@@ -66,6 +68,7 @@ def read_results(path: Path) -> RunResults:
             summary=summary,
             history=trusted_rows(history, summary.get("stopped_because")),
             frames=read_frames(run.frames),
+            walls=read_wall_frames(run.frames),
         )
     except (OSError, json.JSONDecodeError) as error:
         raise CaseError(f"'{path}' does not hold the results of a run: {error}") from error

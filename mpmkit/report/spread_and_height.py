@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from ..output.summary import T500_DIAMETER
+from ..output.summary import T500_DIAMETER, lifted_later
 from .run_results import RunResults
 from .style import BLUE, GREEN, GREY, MILLIMETRES, VERMILION, line_chart
 
@@ -33,8 +33,11 @@ def draw(results: RunResults) -> Figure | None:
         axes.plot([t500], [level], marker="o", markersize=6, color=BLUE, markeredgecolor="white")
         # Half-way up stands clear of both curves: by then the spread is above, the height below.
         right = t500 < 0.7 * results.time[-1]
+        said = f"T500 = {t500:.3g} s"
+        if lifted_later(results.summary):
+            said += f"\n{results.summary['t500_from_lift']:.3g} s from the lift"
         axes.annotate(
-            f"T500 = {t500:.3g} s",
+            said,
             (t500, level / 2),
             xytext=(6 if right else -6, 0),
             textcoords="offset points",

@@ -16,9 +16,14 @@ MILLIMETRES = 1e3  # in a metre
 # Okabe and Ito's palette, told apart by colour-blind readers as well
 BLACK, ORANGE, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#009E73", "#0072B2", "#D55E00"
 GREY = "#767676"
-CATEGORIES = (BLUE, VERMILION, GREEN, ORANGE, BLACK, "#56B4E9", "#CC79A7", GREY)
+SKY, PINK = "#56B4E9", "#CC79A7"
+CATEGORIES = (BLUE, VERMILION, GREEN, ORANGE, BLACK, SKY, PINK, GREY)
 """Colours of curves that have no order."""
 COLOUR_MAP = "viridis"
+WALL_COLOURS = (VERMILION, PINK, ORANGE, BLACK, GREY)
+"""Colours of walls, none of which is in the colour map."""
+FACE_COLOURS = (BLUE, GREEN, SKY)
+"""Colours of faces of the grid beside them."""
 
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",

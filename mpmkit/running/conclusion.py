@@ -8,9 +8,10 @@ from typing import Any
 from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
-from ..output.summary import UNITS, numbers, state_at_end, trusted_to_the_end
+from ..output.summary import UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
 from ..solver import density_watch
 from ..solver.simulation import Simulation
+from .lift import from_lift, lift_start
 from .provenance import plugins_used
 from .recorder import Recorder
 
@@ -64,9 +65,11 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
     trusted = trusted_to_the_end(ended)
     if trusted:
         milestones.finish()
+    t500 = milestones.t500(trusted)
     summary = summarise(
         recorder.history.dataset(),
-        t500=milestones.t500(trusted),
+        t500=t500,
+        t500_from_lift=from_lift(t500, lift_start(simulation.case)),
         at_rest_since=milestones.at_rest_since,
         spread_rate=milestones.spreading,
         particles=len(simulation.particles),
@@ -85,7 +88,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
     found = [
         f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
         for name, unit in UNITS.items()
-        if summary[name] is not None
+        if summary[name] is not None and (name != "t500_from_lift" or lifted_later(summary))
     ]
     RECORD.info("results: %s", ", ".join(found))
     return summary

@@ -14,6 +14,7 @@ from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .milestones import Milestones
 from .schedule import Schedule
+from .wall_frames import WallFrames
 
 COLUMNS = (
     Variable("spread_diameter", "m", "spread diameter"),
@@ -77,6 +78,7 @@ class Recorder:
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
+        self.wall_frames = None if directory is None else WallFrames(case, directory.frames, goes_on)
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
         self.milestones = Milestones(simulation)
@@ -100,7 +102,9 @@ class Recorder:
             "rows_due": self._rows_due,
             "frames_due": self._frames_due,
         }
-        return found if self.frames is None else found | {"frames": self.frames}
+        if self.frames is None or self.wall_frames is None:
+            return found
+        return found | {"frames": self.frames, "wall_frames": self.wall_frames}
 
     def state(self) -> State:
         """What has been recorded, and what is due."""
@@ -153,9 +157,12 @@ class Recorder:
 
     def _add_frame(self) -> None:
         assert self.frames is not None
+        assert self.wall_frames is not None
         simulation, particles = self.simulation, self.simulation.particles
         position = particles.position + simulation.grid.lower
         self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
+        with simulation.blaming:
+            self.wall_frames.add(simulation.time, simulation.steps)
         self._last_frame = simulation.steps
 
 

@@ -1,9 +1,11 @@
-"""What a case takes for granted, said before a run: how the floor holds the material, and when it is free."""
+"""What a case takes for granted, said before a run: its floor, its walls, and when the material is free."""
 
 from __future__ import annotations
 
 from ..case.faces import Stick
 from ..case.model import Case, Face
+from .lift import lift_start
+from .wall_words import wall_sentences
 
 FLOORS = {
     "slip": "free slip, so that it does not hold the material back",
@@ -14,10 +16,12 @@ FLOORS = {
 
 
 def setting(case: Case) -> list[str]:
-    """Sentences on the floor and on the release of the material.
+    """Sentences on the floor, on the release of the material, and on the walls."""
+    return [*_floor_and_release(case), *wall_sentences(case)]
 
-    A scene has a floor if gravity pulls towards a closed face of the vertical axis.
-    """
+
+def _floor_and_release(case: Case) -> list[str]:
+    """A scene has a floor if gravity pulls towards a closed face of the vertical axis."""
     pull, axis = float(case.gravity_vector[-1]), case.space_.axes[-1]
     if pull == 0:
         return []
@@ -30,7 +34,15 @@ def setting(case: Case) -> list[str]:
         return said
     if case.walls:
         names = ", ".join(f"walls.{name}" for name in case.walls)
-        said.append(f"release: from t = 0 on the material is held by {names} alone; T500 counts from t = 0")
+        lifted = lift_start(case)
+        later = (
+            f", and t500_from_lift from the start of the lift, t = {lifted:.4g} s"
+            if lifted is not None and lifted > 0
+            else ""
+        )
+        said.append(
+            f"release: from t = 0 on the material is held by {names} alone; T500 counts from t = 0{later}"
+        )
     else:
         said.append(
             "release: the material is free from t = 0 on, at once; a T500 measured in a laboratory also "

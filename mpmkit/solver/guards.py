@@ -6,11 +6,14 @@ from typing import NoReturn
 
 import numpy as np
 
+from ..case.plugins import plugins_of
 from ..contracts.law import LEAST_RATIO, MOST_RATIO
 from ..errors import GuardStop, PluginFault
 from ..kernels.compile import CHUNK
 from ..kernels.locate import first_unsound
+from ..registry import audit
 from ..registry.audit import require_sentences
+from ..registry.blame import blaming_plugins
 from .balance import EnergyBalance
 from .density import Density
 from .density_watch import DensityWatch, cure
@@ -264,5 +267,21 @@ def _fastest(s: SceneView) -> int:
 
 def _stopped(s: SceneView, guard: str, index: int, what: str, why: str) -> GuardStop:
     number = int(s.particles.number[index])
-    sentence = f"stopped at step {s.steps}, t = {s.time:.6g} s: particle {number} {what}; {why}"
+    who = f"particle {number}{_at_walls(s, s.particles.position[index] + s.grid.lower)}"
+    sentence = f"stopped at step {s.steps}, t = {s.time:.6g} s: {who} {what}; {why}"
     return GuardStop(guard, sentence, step=s.steps, particle=number)
+
+
+def _at_walls(s: SceneView, place: np.ndarray) -> str:
+    """The walls within a cell of a place, m, in words that follow the name of what is there."""
+    if not np.isfinite(place).all():
+        return ""
+    with blaming_plugins(plugins_of(s.case)):
+        surfaces = {name: audit.placed(wall.surface, s.case.space_) for name, wall in s.case.walls.items()}
+        near = [
+            f"walls.{name}"
+            for name, surface in surfaces.items()
+            if surface.present(s.time)
+            and abs(surface.distance(place[None], s.time)[0][0]) <= s.grid.cell_size
+        ]
+    return f", at {' and '.join(near)}," if near else ""

@@ -15,12 +15,14 @@ from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
 from ..kernels.splines import SUPPORT
+from ..kernels.wall_reach import NEAR
 from ..output import PARTICLE_VARIABLES
 from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .available_memory import tightest_limit
 from .redistribution import redistributes
 from .scene import tracks_deformation
+from .walls.wall_nodes import MARGIN as NEAR_MARGIN
 
 DOUBLE = 8
 INDEX = 4
@@ -32,6 +34,8 @@ MIRRORED = 4
 """Doubles of a node of a lattice of a redistribution: its sums, its crowding, and its room."""
 COPY = 1.125
 """Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
+LOOKED_AT = 1 << 12
+"""Most points at which the nodes near a wall are counted."""
 MARGIN = 5
 """Nodes along an axis by which the window is wider than the cells of the material."""
 
@@ -57,7 +61,7 @@ def expected_bytes(case: Case, particles: float) -> int:
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
     of_particles = particles * (bytes_per_particle(case) + kept)
-    return int(of_particles + window_nodes(case) * _doubles_per_node(case) * DOUBLE)
+    return int(of_particles + window_nodes(case) * _doubles_per_node(case) * DOUBLE + wall_bytes(case))
 
 
 def checkpoint_bytes(case: Case, particles: float) -> int:
@@ -131,6 +135,33 @@ def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
     lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
     upper = np.minimum(np.max([high for _, high in bounds], axis=0), domain_upper)
     return lower, upper
+
+
+def wall_bytes(case: Case) -> float:
+    """Memory of the walls: each knows every node of the window, and much more of those near it."""
+    dim, corners = case.space_.dim, 1 << case.space_.dim
+    number_place_and_face, free_distance_and_push, marks = 3 * dim * DOUBLE, 3 * DOUBLE, 2
+    found_normal_and_velocity, kinds_of_node, distance = 4 * dim, 5, 1
+    around, pushes, impulses = 6 * corners, (1 + corners) + (1 + 2 * dim) + 2, 4 * dim
+    of_near = found_normal_and_velocity + kinds_of_node + distance + around + pushes + impulses
+    nodes, total = window_nodes(case), 0.0
+    with blaming_plugins(plugins_of(case)):
+        for wall in case.walls.values():
+            memory = len(wall.contact.memory) * DOUBLE
+            total += nodes * (number_place_and_face + free_distance_and_push + marks + memory)
+            total += nodes * _part_near(audit.placed(wall.surface, case.space_), case) * of_near * DOUBLE
+    return total
+
+
+def _part_near(surface: audit.AuditedSurface, case: Case) -> float:
+    """Part of the window of nodes that is near a wall when a run begins."""
+    lower, upper = _extent(case)
+    count = max(2, round(LOOKED_AT ** (1 / len(lower))))
+    places = np.indices((count,) * len(lower)).reshape(len(lower), -1).T + 0.5
+    around = MARGIN / 2 * case.grid.cell_size
+    places = lower - around + places * (upper - lower + 2 * around) / count
+    distance, _ = surface.distance(places, 0.0)
+    return float(np.mean(np.abs(distance) <= (NEAR + NEAR_MARGIN) * case.grid.cell_size))
 
 
 def _kept_rows(case: Case) -> float:

@@ -6,6 +6,7 @@ from ..running.recorder import COLUMNS
 
 FIGURES = {
     "t500": ("s", "time to a spread of 500 mm"),
+    "t500_from_lift": ("s", "time from the start of the lift to a spread of 500 mm"),
     "final_spread": ("m", "spread diameter at the end"),
     "final_slump": ("m", "slump at the end"),
     "final_height": ("m", "largest height at the end"),
