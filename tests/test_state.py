@@ -30,6 +30,7 @@ MADE_OF_THE_CASE = {
     "ActiveNodes": {"faces"},
     "Averager": {"_scatter_pairs", "_gather_scalar"},
     "Walls": {"grid"},
+    "Faces": {"grid", "_are_walls"},
     "Wall": {"name", "surface", "contact", "grid", "odd", "pulls"},
     "WallNodes": {"contact", "grid"},
     "Relaxation": {"_treatment"},
@@ -59,7 +60,8 @@ NOT_COMPARED = {
         "image_weight",
         "foot",
     }
-    | {"foot_weight", "share", "stiffness", "velocity", "inner", "held", "pair", "impulse"},
+    | {"foot_weight", "share", "stiffness", "velocity", "inner", "held", "pair", "impulse", "mapped"},
+    "ActiveNodes": {"held"},  # filled by a fold, and read by the filling of the same step
     "History": {"_next_flush"},  # wall time
     "Stopwatch": {"_begin", "_before"},  # wall time; ``elapsed`` is compared
 }

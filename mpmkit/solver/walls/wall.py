@@ -136,8 +136,11 @@ class Wall:
             momentum, forces, w.held,
         )  # fmt: skip
 
-    def act(self, rehearse: bool, dt: float | None) -> None:
-        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s."""
+    def act(self, rehearse: bool, dt: float | None, of_faces: np.ndarray) -> None:
+        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s.
+
+        Adds to ``of_faces`` what the faces of the grid give at nodes that they hold against it.
+        """
         if not self.touches:
             return
         w = self.near
@@ -160,6 +163,19 @@ class Wall:
         w.remember(acting, nodes.memory)
         impulse = self._push(acting, before, nodes.velocity, dt is not None)
         self._add_up(impulse, acting, sums)
+        wall_contact.add_up_held(
+            impulse,
+            w.window.nodes,
+            acting,
+            w.at,
+            w.index,
+            w.share,
+            w.free,
+            w.faces,
+            w.sides,
+            w.places,
+            of_faces,
+        )
 
     def _push(self, acting: np.ndarray, before: np.ndarray, after: np.ndarray, solved: bool) -> np.ndarray:
         """Bring the velocities at the wall from ``before`` to ``after``; the impulses, N s, ``(k, dim)``."""
@@ -224,10 +240,11 @@ class Wall:
         w = self.near
         ghosts.fill(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
-            dt is not None, dt or 0.0, w.held, w.impulse,
+            dt is not None, dt or 0.0, w.held, w.impulse, w.mapped,
         )  # fmt: skip
-        sums = self._mapped if dt is None else self.sums
-        self._add_up(w.impulse[w.ghosts], w.ghosts, sums)
+        if dt is not None:
+            self._add_up(w.impulse[w.ghosts], w.ghosts, self.sums)
+            self._add_up(w.mapped[w.ghosts], w.ghosts, self._mapped)
 
     def _add_up(self, impulse: np.ndarray, nodes: np.ndarray, sums: np.ndarray) -> None:
         w = self.near
