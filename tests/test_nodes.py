@@ -48,6 +48,13 @@ def mirrors(shape, faces):
     return np.concatenate(found), np.array(first)
 
 
+def uncounted(faces, shape, sums=1):
+    """Arguments by which kernels count what faces give, of a window of ``block``: tests/test_face_impulses.py
+    looks at what they find."""
+    n, dim = len(mirrors(shape, faces)[0]), len(faces)
+    return np.zeros((n, dim)), 0.1, np.zeros((n, NODE)), False, *np.zeros((sums, 2 * dim, 2 * dim + 1))
+
+
 def plane(array, axis, k):
     """View of a plane of nodes of an array (nx, ny, nz, slots)."""
     return np.moveaxis(array, axis, 0)[k]
@@ -251,7 +258,9 @@ def test_momentum_equation_and_conditions_on_the_faces(faces):
     contact = records[:, CONTACT].reshape(shape).astype(int)
     force = records[:, 1 + dim : 1 + 2 * dim].copy()
 
-    nodes.momentum_to_velocity(records, *rows(shape), faces, *mirrors(shape, faces), friction)
+    nodes.momentum_to_velocity(
+        records, *rows(shape), faces, *mirrors(shape, faces), friction, *uncounted(faces, shape)
+    )
     constrained(velocity, np.zeros(grid), contact, faces, friction, walls, solved=False)
     inner = tuple(slice(1, n - 1) if n > 1 else slice(None) for n in shape)
     found = records.reshape(*shape, NODE)
@@ -262,7 +271,9 @@ def test_momentum_equation_and_conditions_on_the_faces(faces):
     change[full] = dt * force[full] / m[full, None]
     change = change.reshape(grid)
     velocity = velocity + change
-    nodes.solve_momentum(records, *rows(shape), faces, *mirrors(shape, faces), friction, dt)
+    nodes.solve_momentum(
+        records, *rows(shape), faces, *mirrors(shape, faces), friction, *uncounted(faces, shape, 2), dt
+    )
     full = full.reshape(shape)[..., None]  # an empty node keeps its force as change: no particle sees it
     constrained(velocity, change, contact, faces, friction, walls, solved=True)
     np.testing.assert_allclose(found[inner][..., 1 : 1 + dim], velocity[inner], rtol=0, atol=1e-14)
@@ -283,7 +294,8 @@ def test_friction_never_turns_the_slip_round():
         records[3 * i, CONTACT] = TOUCHED << 1
     behind = np.array([[k + 1, k + 2, k] for k in (0, 3, 6)])  # ghosts and images that nobody asks for
     plane_first = np.array([0, 0, 0, 0, 3, 3, 3])
-    nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, plane_first, friction, 1.0)
+    counted = np.zeros((3, 2)), 0.1, np.zeros((3, NODE)), False, np.zeros((4, 4)), np.zeros((4, 4))
+    nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, plane_first, friction, *counted, 1.0)
     np.testing.assert_allclose(records[[0, 3, 6], 1], [0.5, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 2], [0.0, 0.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(records[[0, 3, 6], 3], [-0.5, -0.2, 0.0], atol=1e-15)

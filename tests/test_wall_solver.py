@@ -182,7 +182,7 @@ def test_contact_is_held_until_it_is_decided_anew():
     held = near.at[near.at_wall][near.memory["contact"][near.at[near.at_wall]] == 1]
     assert len(held) > 4
     nodes[held, 2] = 0.3
-    one.act(False, None)
+    one.act(False, None, simulation.operations.faces.mapped)
     np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
 
 
@@ -237,7 +237,7 @@ def test_fold_and_fill_are_transposes(odd, space):
     folded, filled = a.copy(), b.copy()
     where = (near.ghosts, near.at, near.normal, rest, near.index, near.weight, near.touched, odd)
     ghosts.fold(folded, *where, True, True, near.held)
-    ghosts.fill(filled, *where, True, 0.1, near.held, near.impulse)
+    ghosts.fill(filled, *where, True, 0.1, near.held, near.impulse, near.mapped)
     usable = near.ghosts[near.weight[near.ghosts, 0] >= 0]
     assert len(usable) > 4
     assert not folded[near.at[usable]].any()
@@ -345,7 +345,7 @@ def test_walls_that_meet_are_one_symmetric_constraint(space):
     for _ in range(2):
         given = np.where(own, random.standard_normal((len(nodes), dim)), 0.0)
         nodes[:, 1 : 1 + dim] = given
-        walls.constrain()
+        walls.constrain(operations.faces.given(False))
         pairs.append((given, np.where(own, nodes[:, 1 : 1 + dim], 0.0)))
     (a, qa), (b, qb) = pairs
     assert (mass * np.abs(qa - a)).sum() > 1e-3 * (mass * np.abs(a)).sum()

@@ -88,8 +88,10 @@ def sample(
     axes = []
     for a in range(space.dim):
         cuts = sorted({lower[a], low[a], high[a], upper[a]})
-        kept = cuts.index(low[a])
-        axes.append(rows(cuts, kept, origin=origin[a], cell_size=cell_size, per_cell=per_axis[a], near=near))
+        interval = cuts.index(low[a])
+        axes.append(
+            rows(cuts, interval, origin=origin[a], cell_size=cell_size, per_cell=per_axis[a], near=near)
+        )
     inside = np.concatenate([shape.contains(points, space) for points in _centres(axes)])
     if not inside.any():
         return _none(space)

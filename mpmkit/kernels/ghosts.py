@@ -58,17 +58,21 @@ def fold(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, m
 
 
 @function()
-def fill(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, solved, dt, held, impulse):
+def fill(
+    nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, solved, dt, held, impulse, mapped
+):
     """Give touched ghosts the velocity of their images, mirrored; the transpose of ``fold``.
 
-    ``impulse`` (k, dim) gets what the wall has given by each ghost, N s, with m, p and f of the ghost: in
-    mapping m (v_ghost - v_image) + R p - p, and once ``solved`` m (Δv_ghost - Δv_image) + dt (R f - f).
+    Once ``solved``, ``impulse`` (k, dim) gets what the wall gives by each ghost, N s, with m, p and f of the
+    ghost, m (Δv_ghost - Δv_image) + dt (R f - f), and ``mapped`` what it gave in mapping, with the velocities
+    as mapped, v - Δv: m (v_ghost - v_image) + R p - p. A face of the grid that begins to push only now may
+    have changed these.
     """
     dim = normal.shape[1]
     v, change, folded, none = np.empty(dim), np.empty(dim), np.empty(dim), np.zeros(dim)
     for k in ghost:
         g = at[k]
-        impulse[k, :] = 0.0
+        impulse[k, :] = mapped[k, :] = 0.0
         if not touched[g] or weight[k, 0] < 0.0:
             continue
         v[:] = 0.0
@@ -77,19 +81,18 @@ def fill(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, s
             for a in range(dim):
                 v[a] += weight[k, c] * nodes[index[k, c], 1 + a]
                 change[a] += weight[k, c] * nodes[index[k, c], 1 + dim + a]
-        m = held[k, 0]
         _reflect(v, 1.0, wall_velocity[k], normal[k], odd, nodes[g, 1 : 1 + dim])
         if solved:
+            m = held[k, 0]
             _reflect(change, 0.0, none, normal[k], odd, nodes[g, 1 + dim : 1 + 2 * dim])
             _reflect(held[k, 1 + dim :], 0.0, none, normal[k], odd, folded)
             for a in range(dim):
-                impulse[k, a] = m * (nodes[g, 1 + dim + a] - change[a]) + dt * (
-                    folded[a] - held[k, 1 + dim + a]
-                )
-        else:
+                gained = nodes[g, 1 + dim + a] - change[a]
+                impulse[k, a] = m * gained + dt * (folded[a] - held[k, 1 + dim + a])
+                mapped[k, a] = m * (nodes[g, 1 + a] - v[a] - gained)
             _reflect(held[k, 1 : 1 + dim], m, wall_velocity[k], normal[k], odd, folded)
             for a in range(dim):
-                impulse[k, a] = m * (nodes[g, 1 + a] - v[a]) + folded[a] - held[k, 1 + a]
+                mapped[k, a] += folded[a] - held[k, 1 + a]
 
 
 @function()

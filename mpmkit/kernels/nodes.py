@@ -18,6 +18,9 @@ node and the one after the last of each row that is reached, and ``tasks`` cuts 
 equal load. ``mirrors`` lists (ghost, image, node of the wall) of ``PLANES`` planes an axis, each from its
 entry of ``plane_first`` on. Entries of one plane have no node in common, so that they can be handled in
 parallel; images of two planes may be the same nodes. ``faces[a, side]`` is one of the codes below.
+
+``given`` (faces, …) are the sums of what the faces give to the material, in the order of ``faces``; see
+``face_impulses``, as for ``place`` and ``held``, which have a row for each of ``mirrors``.
 """
 
 from __future__ import annotations
@@ -27,6 +30,7 @@ import math
 import numpy as np
 from numba import prange
 
+from . import face_impulses
 from .compile import CHUNK, chunk_count, function, inline, kernel
 from .scatter import CONTACT, NODE, PUSHED, TOUCHED
 
@@ -49,6 +53,13 @@ def _acting(face, a):
     if face == STICK:
         return TOUCHED << a
     return PUSHED << a if face in (FRICTION, RELEASING_STICK) else 0
+
+
+@inline()
+def holds(face, contact, a):
+    """Whether a face across axis a holds a node in its plane, from what the node knows of contact."""
+    acting = _acting(face, a)
+    return face not in (OPEN, PERIODIC) and (not acting or contact & acting)
 
 
 @kernel()
@@ -103,6 +114,16 @@ def _parity(face, axis, dim, vectors):
 
 
 @function()
+def _reflect_plane(nodes, face, axis, of_plane, dim, first, last, vectors, folding):
+    acting = _acting(face, axis) if vectors else 0
+    sign = _parity(face, axis, dim, vectors)
+    if len(of_plane) < FEW:
+        _move_few(nodes, of_plane, acting, first, last, sign, folding)
+    else:
+        _move_many(nodes, of_plane, acting, first, last, sign, folding)
+
+
+@function()
 def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
     dim = len(faces)
     for step in range(dim):
@@ -111,12 +132,7 @@ def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
             begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
             if begin < end:
                 face = faces[a, min(plane, 1)]
-                acting = _acting(face, a) if vectors else 0
-                of_plane, sign = mirrors[begin:end], _parity(face, a, dim, vectors)
-                if len(of_plane) < FEW:
-                    _move_few(nodes, of_plane, acting, first, last, sign, folding)
-                else:
-                    _move_many(nodes, of_plane, acting, first, last, sign, folding)
+                _reflect_plane(nodes, face, a, mirrors[begin:end], dim, first, last, vectors, folding)
 
 
 @function()
@@ -135,7 +151,59 @@ def fill(nodes, faces, mirrors, plane_first, first, last, vectors):
 
 
 @function()
-def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
+def fold_held(nodes, faces, mirrors, plane_first, first, last, held):
+    """``fold`` of vectors that keeps in ``held`` what lay on the ghosts of closed faces."""
+    dim = len(faces)
+    for a in range(dim):
+        for plane in range(PLANES):
+            begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
+            if begin < end:
+                face, of_plane = faces[a, min(plane, 1)], mirrors[begin:end]
+                if face != PERIODIC:
+                    face_impulses.hold(nodes, of_plane, _acting(face, a), first, last, held[begin:end])
+                _reflect_plane(nodes, face, a, of_plane, dim, first, last, True, True)
+
+
+@function()
+def fill_counted(
+    nodes, faces, mirrors, plane_first, last, solved, dt, place, cell_size, held, is_last, given, mapped
+):
+    """``fill`` of vectors, slots 1..last-1, that counts what the faces give by it.
+
+    ``solved``: in a step of ``dt`` s. ``is_last``: whether that is the last filling of a step; otherwise
+    walls of the case act afterwards.
+    """
+    dim = len(faces)
+    for step in range(dim):
+        a = dim - 1 - step
+        for plane in range(PLANES):
+            begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
+            if begin < end:
+                side = min(plane, 1)
+                face, of_plane, at, f = faces[a, side], mirrors[begin:end], place[begin:end], 2 * a + side
+                acting, sign, out = _acting(face, a), _parity(face, a, dim, True), cell_size * (2 * side - 1)
+                if face != PERIODIC and is_last:
+                    face_impulses.count(
+                        nodes, of_plane, acting, sign, a, out, at, held[begin:end], dt, given[f], mapped[f]
+                    )
+                elif face != PERIODIC:
+                    face_impulses.count_overwritten(
+                        nodes, of_plane, acting, sign, a, out, at, solved, False, mapped[f]
+                    )
+                    if solved:
+                        face_impulses.count_overwritten(
+                            nodes, of_plane, acting, sign, a, out, at, True, True, given[f]
+                        )
+                _reflect_plane(nodes, face, a, of_plane, dim, 1, last, True, False)
+
+
+@function()
+def _clear(sums):
+    sums[:] = 0.0
+
+
+@function()
+def _constrain(nodes, faces, mirrors, plane_first, friction, solved, place, given):
     """Boundary conditions on the velocity and, once ``solved``, on its change.
 
     Where walls meet, a node has the conditions of all of them. The pushes of all Coulomb walls come first,
@@ -149,17 +217,27 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved):
                 face, plane = faces[a, side], PLANES * a + side
                 begin, end = plane_first[plane], plane_first[plane + 1]
                 pushes = face in (FRICTION, RELEASING_STICK)
+                of_plane, at, by = mirrors[begin:end], place[begin:end], given[2 * a + side]
                 if turn == 0 and solved and pushes:
-                    _push(nodes, dim, mirrors[begin:end], a, 1 - 2 * side, friction[a, side], grip[begin:end])
+                    _push(nodes, dim, of_plane, a, 1 - 2 * side, friction[a, side], grip[begin:end], at, by)
                 elif turn == 1 and face != OPEN and face != PERIODIC:
                     sticks = face in (STICK, RELEASING_STICK)
-                    _hold(nodes, dim, mirrors[begin:end], _acting(face, a), a, sticks, solved)
+                    _hold(nodes, dim, of_plane, _acting(face, a), a, sticks, solved, at, by)
                 elif turn == 2 and solved and face == FRICTION:
-                    _drag(nodes, dim, mirrors[begin:end], a, grip[begin:end])
+                    _drag(nodes, dim, of_plane, a, grip[begin:end], at, by)
+
+
+@inline()
+def _change(node, dim, d, change, solved, place, k, given):
+    """Change a velocity along axis d and, once ``solved``, its change, by an impulse of a face."""
+    face_impulses.add(given, dim, place, k, d, node[0] * change)
+    if solved:
+        node[1 + dim + d] += change
+    node[1 + d] += change
 
 
 @function()
-def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
+def _push(nodes, dim, mirrors, a, inward, coefficient, grip, place, given):
     """A wall that pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
 
     Whether it pushes a node that is touched is decided once a step, by the momentum equation: it does if it
@@ -173,28 +251,25 @@ def _push(nodes, dim, mirrors, a, inward, coefficient, grip):
         push = -inward * node[1 + a]
         if push > 0.0 and contacts & TOUCHED << a:
             node[CONTACT] = contacts | this
-            node[1 + dim + a] -= node[1 + a]
-            node[1 + a] = 0.0
+            _change(node, dim, a, -node[1 + a], True, place, k, given)
             grip[k] = coefficient * push
         else:
             node[CONTACT] = contacts & ~this
 
 
 @function()
-def _hold(nodes, dim, mirrors, acting, a, sticks, solved):
+def _hold(nodes, dim, mirrors, acting, a, sticks, solved, place, given):
     """Nodes where a face acts have its velocity, zero: along the normal, or all of it if it ``sticks``."""
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
         if not acting or int(node[CONTACT]) & acting:
             for d in range(dim):
                 if d == a or sticks:
-                    if solved:
-                        node[1 + dim + d] -= node[1 + d]
-                    node[1 + d] = 0.0
+                    _change(node, dim, d, -node[1 + d], solved, place, k, given)
 
 
 @function()
-def _drag(nodes, dim, mirrors, a, grip):
+def _drag(nodes, dim, mirrors, a, grip, place, given):
     """Coulomb's law: drag takes at most coefficient × push from the slip, and never turns it round."""
     for k in range(len(mirrors)):
         if grip[k] > 0.0:
@@ -207,8 +282,7 @@ def _drag(nodes, dim, mirrors, a, grip):
             lost = min(1.0, grip[k] / slip) if slip > 0.0 else 0.0
             for d in range(dim):
                 if d != a:
-                    node[1 + dim + d] -= lost * node[1 + d]
-                    node[1 + d] -= lost * node[1 + d]
+                    _change(node, dim, d, -lost * node[1 + d], True, place, k, given)
 
 
 @kernel()
@@ -252,8 +326,14 @@ def divide_pairs(pairs, average, rows, tasks, faces, mirrors, plane_first):
 
 
 @kernel()
-def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, plane_first, friction):
-    """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are."""
+def momentum_to_velocity(
+    nodes, rows, tasks, faces, mirrors, plane_first, friction, place, cell_size, held, walls_act, mapped
+):
+    """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are.
+
+    ``walls_act``: whether walls of the case act afterwards. ``mapped`` gets what the faces have given by it,
+    but for their ghosts, which are counted when the momentum equation is solved.
+    """
     dim = len(faces)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
@@ -262,13 +342,26 @@ def momentum_to_velocity(nodes, rows, tasks, faces, mirrors, plane_first, fricti
                 if m > 0.0:
                     for d in range(dim):
                         nodes[i, 1 + d] /= m
-    _constrain(nodes, faces, mirrors, plane_first, friction, False)
-    fill(nodes, faces, mirrors, plane_first, 1, 1 + dim, True)
+    _clear(mapped)
+    _constrain(nodes, faces, mirrors, plane_first, friction, False, place, mapped)
+    if walls_act:
+        fill_counted(
+            nodes, faces, mirrors, plane_first, 1 + dim, False, 0.0, place, cell_size, held, False, mapped,
+            mapped,
+        )  # fmt: skip
+    else:
+        fill(nodes, faces, mirrors, plane_first, 1, 1 + dim, True)
 
 
 @kernel()
-def solve_momentum(nodes, rows, tasks, faces, mirrors, plane_first, friction, dt):
-    """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled."""
+def solve_momentum(
+    nodes, rows, tasks, faces, mirrors, plane_first, friction, place, cell_size, held, walls_act, given,
+    mapped, dt,
+):  # fmt: skip
+    """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled.
+
+    Adds to ``given`` what the faces give by it, and to ``mapped`` what their ghosts have given in mapping.
+    """
     dim = len(faces)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
@@ -279,6 +372,9 @@ def solve_momentum(nodes, rows, tasks, faces, mirrors, plane_first, friction, dt
                         change = dt * nodes[i, 1 + dim + d] / m
                         nodes[i, 1 + d] += change
                         nodes[i, 1 + dim + d] = change
-    _constrain(nodes, faces, mirrors, plane_first, friction, True)
+    _constrain(nodes, faces, mirrors, plane_first, friction, True, place, given)
     # With contact, the record's last: a wall pushes a ghost in its plane where it pushes its image.
-    fill(nodes, faces, mirrors, plane_first, 1, CONTACT + 1, True)
+    fill_counted(
+        nodes, faces, mirrors, plane_first, CONTACT + 1, True, dt, place, cell_size, held, not walls_act,
+        given, mapped,
+    )  # fmt: skip

@@ -16,8 +16,9 @@ from __future__ import annotations
 import numpy as np
 
 from .compile import function
-from .nodes import FRICTION, MIRROR, RELEASING_STICK, STICK
-from .scatter import CONTACT, PUSHED, TOUCHED
+from .face_impulses import add
+from .nodes import RELEASING_STICK, STICK, holds
+from .scatter import CONTACT
 
 
 @function()
@@ -30,13 +31,8 @@ def find_free_axes(nodes, at, faces, dim, free):
         bits = (1 << dim) - 1
         contact = int(nodes[g, CONTACT])
         for a in range(dim):
-            face = faces[g, a]
-            if face == MIRROR or (face == FRICTION and contact & PUSHED << a):
-                bits &= ~(1 << a)
-            elif (face == STICK and contact & TOUCHED << a) or (
-                face == RELEASING_STICK and contact & PUSHED << a
-            ):
-                bits = 0
+            if holds(faces[g, a], contact, a):
+                bits &= 0 if faces[g, a] in (STICK, RELEASING_STICK) else ~(1 << a)
         free[g] = bits
 
 
@@ -212,3 +208,36 @@ def add_up(impulse, nodes, place, distance, normal, wall_velocity, sums):
             for a in range(3):
                 b, c = (a + 1) % 3, (a + 2) % 3
                 sums[3 + a] += x[b] * impulse[j, c] - x[c] * impulse[j, b]
+
+
+@function()
+def _holder(faces, contact, e):
+    """The axis across which a face holds a node along axis e: that axis, or one whose face it sticks to."""
+    if not holds(faces[e], contact, e):
+        for a in range(len(faces)):
+            if faces[a] in (STICK, RELEASING_STICK) and holds(faces[a], contact, a):
+                return a
+    return e
+
+
+@function()
+def add_up_held(impulse, nodes, acting, at, index, share, free, faces, sides, places, of_faces):
+    """Add what the faces give at nodes that they hold against a wall: the shares that these do not take.
+
+    Args:
+        impulse: (n, dim) of the wall at the ``acting`` nodes, N s.
+        faces, sides: (nodes, dim) code of the face across each axis on which a node lies, and its side.
+        places: (nodes, dim) m.
+        of_faces: (2 dim, ...) sums of the faces, see ``face_impulses``.
+    """
+    dim = impulse.shape[1]
+    for j in range(len(acting)):
+        k = acting[j]
+        for c in range(share.shape[1]):
+            i = at[k] if c == 0 else index[k, c - 1]
+            if share[j, c] == 0.0 or free[i] == (1 << dim) - 1:
+                continue
+            for e in range(dim):
+                if not free[i] >> e & 1:
+                    a = _holder(faces[i], int(nodes[i, CONTACT]), e)
+                    add(of_faces[2 * a + sides[i, a]], dim, places, i, e, -share[j, c] * impulse[j, e])

@@ -73,7 +73,7 @@ class Recorder:
         self.simulation = simulation
         self.directory = directory
         variables = PARTICLE_VARIABLES | state_variables(case)
-        axes, walls = case.space_.axes, tuple(case.walls)
+        axes, walls = case.space_.axes, simulation.wall_names
         columns = COLUMNS + (wall_columns(axes) if walls else ())
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
@@ -137,7 +137,7 @@ class Recorder:
             "time_step": simulation.time_step,
             "mach_number": simulation.mach_number,
         }
-        if simulation.case.walls:
+        if simulation.wall_names:
             values |= self._wall_means()
         kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.nodes import OPEN, PERIODIC, PLANES
+from ..kernels.scatter import NODE
 from .grid import GHOST, Window
 from .tasks import cuts
 
@@ -31,6 +32,8 @@ class ActiveNodes:
         plane_first: ``(3 dim + 1,)``, the first of ``mirrors`` of each plane, and their number. The planes
             of an axis are the ghosts of its lower face, those of its upper face, and the upper face of a
             periodic axis, which is an image of the lower one.
+        places: ``(n, dim)``, m, of the nodes of the wall of ``mirrors``; beyond a period that of the image.
+        held: ``(n, NODE)``, scratch: what lay on the ghosts of ``mirrors`` when they were folded.
     """
 
     def __init__(self, window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
@@ -51,6 +54,8 @@ class ActiveNodes:
         mirrors = [_mirrors(window, touched, k // PLANES, plane) for k, plane in enumerate(planes)]
         self.mirrors = np.concatenate(mirrors)
         self.plane_first = np.concatenate([[0], np.cumsum([len(of_plane) for of_plane in mirrors])])
+        self.places = _places(window, self.mirrors[:, 2])
+        self.held = np.zeros((len(self.mirrors), NODE))
         self.arguments = (self.rows, self.tasks, self.faces, self.mirrors, self.plane_first)
 
 
@@ -87,6 +92,13 @@ def _mirrors(window: Window, touched: np.ndarray, axis: int, plane: Plane | None
     index = np.moveaxis(np.arange(touched.size).reshape(touched.shape), axis, 0)
     ghosts = index[plane.ghost][np.moveaxis(touched, axis, 0)[plane.ghost]]
     return ghosts[:, None] + (np.array(plane) - plane.ghost) * window.strides[axis]
+
+
+def _places(window: Window, nodes: np.ndarray) -> np.ndarray:
+    """Where nodes of the window are, m, ``(n, dim)``; those beyond a period are at their image."""
+    grid = window.grid
+    number = np.stack(np.unravel_index(nodes, window.shape[: grid.dim]), axis=1) + window.lower
+    return grid.lower + np.where(grid.periodic, np.mod(number, grid.cells), number) * grid.cell_size
 
 
 def _planes(window: Window, axis: int) -> Iterator[Plane | None]:

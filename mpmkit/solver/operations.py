@@ -23,7 +23,7 @@ from .relaxation import Relaxation
 from .sorting import Sorting
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .touch import Touch
-from .walls import Walls
+from .walls import Faces, Walls
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
@@ -48,6 +48,7 @@ class SceneOperations:
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
         self.walls = Walls(case, grid, self.window, particles)
+        self.faces = Faces(grid)
         self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
@@ -93,6 +94,7 @@ class SceneOperations:
             "relaxation": self.relaxation,
             "stage": self.stage,
             "walls": self.walls,
+            "faces": self.faces,
         }
 
     def state(self) -> State:
@@ -175,8 +177,8 @@ class SceneOperations:
         self._map(momentum=True, forces=forces)
         self._fold(0, 1 + (2 if forces else 1) * self.grid.dim)
         self.walls.fold(True, forces)
-        nodes.momentum_to_velocity(self.window.nodes, *active.arguments, self.grid.friction)
-        self.walls.constrain(rehearse=self._rehearsing)
+        nodes.momentum_to_velocity(self.window.nodes, *self._faces(), self.faces.mapped)
+        self._walls_act()
         self._account.mapped(forces)
 
     def map_forces(self) -> None:
@@ -204,7 +206,21 @@ class SceneOperations:
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
-        nodes.fold(self.window.nodes, active.faces, active.mirrors, active.plane_first, first, last, True)
+        planes = active.faces, active.mirrors, active.plane_first
+        nodes.fold_held(self.window.nodes, *planes, first, last, active.held)
+
+    def _faces(self) -> tuple[Any, ...]:
+        """What the kernels need to let the faces act, and to count what these give."""
+        active, grid = self.sorting.active, self.grid
+        return (
+            *active.arguments, grid.friction, active.places, grid.cell_size, active.held, self.walls.touched
+        )  # fmt: skip
+
+    def _walls_act(self, dt: float | None = None) -> None:
+        """Let walls constrain the velocities as mapped, or as solved in a step of ``dt`` s."""
+        if self.walls.touched:
+            self.walls.constrain(self.faces.given(dt is not None), dt, self._rehearsing)
+            self.faces.fill(self.window, self.sorting.active, dt)
 
     # --- Nodes
 
@@ -215,8 +231,9 @@ class SceneOperations:
 
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
-        nodes.solve_momentum(self.window.nodes, *self.sorting.active.arguments, self.grid.friction, dt)
-        self.walls.constrain(dt, self._rehearsing)
+        given = self.faces.sums, self.faces.mapped
+        nodes.solve_momentum(self.window.nodes, *self._faces(), *given, dt)
+        self._walls_act(dt)
 
     # --- Nodes to particles
 
@@ -243,6 +260,7 @@ class SceneOperations:
         if not audit.is_finite(flip):
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self.walls.taken_up(flip)
+        self.faces.taken_up(1 - flip)
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 

@@ -211,9 +211,14 @@ class Simulation:
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
         return self.operations.mapped_mass
 
+    @property
+    def wall_names(self) -> tuple[str, ...]:
+        """Walls of the case, then the faces of the grid that are walls."""
+        return *self.case.walls, *self.operations.faces.names
+
     def wall_sums(self) -> np.ndarray:
         """What each wall has given to the material so far, ``(walls, …)``: impulse, its moment, work."""
-        return self.operations.walls.sums()
+        return np.array([*self.operations.walls.sums(), *self.operations.faces.of_walls()])
 
     @property
     def walls_work(self) -> float:

@@ -162,13 +162,21 @@ class Wall:
         """Bring what it holds to the velocities that the contact gave, after others have pushed the nodes."""
         self._sweep(self._after, backwards, solved)
 
-    def count(self, solved: bool) -> None:
-        """Add up what it has given at the nodes."""
-        sums = self.sums
+    def count(self, solved: bool, of_faces: np.ndarray) -> None:
+        """Add up what it has given at the nodes.
+
+        ``of_faces`` gets what the faces of the grid give at nodes that they hold against it.
+        """
+        w, sums = self.near, self.sums
         if not solved:
             sums = self._mapped
             sums[:] = 0.0
-        self._add_up(self.near.given[: len(self._acting)], self._acting, sums)
+        impulse = w.given[: len(self._acting)]
+        self._add_up(impulse, self._acting, sums)
+        wall_contact.add_up_held(
+            impulse, w.window.nodes, self._acting, w.at, w.index, w.share, w.free, w.faces, w.sides, w.places,
+            of_faces,
+        )  # fmt: skip
 
     def _give(self, before: np.ndarray, after: np.ndarray, solved: bool) -> None:
         w = self.near
@@ -242,10 +250,11 @@ class Wall:
         w = self.near
         ghosts.fill(
             w.window.nodes, w.ghosts, w.at, w.normal, w.wall_velocity, w.index, w.weight, w.touched, self.odd,
-            dt is not None, dt or 0.0, w.held, w.impulse,
+            dt is not None, dt or 0.0, w.held, w.impulse, w.mapped,
         )  # fmt: skip
-        sums = self._mapped if dt is None else self.sums
-        self._add_up(w.impulse[w.ghosts], w.ghosts, sums)
+        if dt is not None:
+            self._add_up(w.impulse[w.ghosts], w.ghosts, self.sums)
+            self._add_up(w.mapped[w.ghosts], w.ghosts, self._mapped)
 
     def _add_up(self, impulse: np.ndarray, nodes: np.ndarray, sums: np.ndarray) -> None:
         w = self.near

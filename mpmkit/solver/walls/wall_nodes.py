@@ -39,7 +39,8 @@ class WallNodes:
         if grid.radial:
             places[:, 0] = np.abs(places[:, 0])
         self.places = grid.lower + places * grid.cell_size
-        self._faces = _faces_at(grid, number)
+        self.faces = _faces_at(grid, number)
+        self.sides = (number == grid.cells).astype(np.uint8)
         self.free = np.zeros(len(active), dtype=np.int64)
         count = len(active)
         self.dense = np.full(count, wall_nodes.FAR)
@@ -79,7 +80,9 @@ class WallNodes:
         self.share = np.zeros((k, 1 + (1 << dim)))
         self.held = np.zeros((k, 1 + 2 * dim))
         self.pair = np.zeros((k, 2))
-        self.stiffness, self.velocity, self.inner, self.given, self.impulse = np.zeros((5, k, dim))
+        self.stiffness, self.velocity, self.inner, self.given, self.impulse, self.mapped = np.zeros(
+            (6, k, dim)
+        )
         self.held_at = np.zeros(k, dtype=np.uint8)
         self.dense[:] = wall_nodes.FAR
         self.found, self.sorted = True, False
@@ -120,7 +123,7 @@ class WallNodes:
 
     def see_faces(self) -> None:
         """Find the axes along which no face of the grid holds a node, in the present state of the nodes."""
-        wall_contact.find_free_axes(self.window.nodes, self.at, self._faces, self.grid.dim, self.free)
+        wall_contact.find_free_axes(self.window.nodes, self.at, self.faces, self.grid.dim, self.free)
 
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
         """Keep what a contact remembers; nodes at which it does not act forget."""

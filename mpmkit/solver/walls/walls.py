@@ -34,7 +34,7 @@ class Walls:
     """Lets each wall act where a step constrains nodes: after mapping, and after the momentum equation.
 
     Walls fold one after the other and fill in the opposite order, after the faces of the grid have folded and
-    before they fill, so that all of it together is a fold and its transpose.
+    before they fill for the last time, so that all of it together is a fold and its transpose.
     """
 
     def __init__(self, case: Case, grid: Grid, window: Window, particles: Particles) -> None:
@@ -150,11 +150,18 @@ class Walls:
         for wall in self.walls:
             wall.fold(momentum, forces)
 
-    def constrain(self, dt: float | None = None, rehearse: bool = False) -> None:
-        """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill all ghosts."""
+    @property
+    def touched(self) -> bool:
+        """Whether any wall acts in this step."""
+        return any(wall.touches for wall in self.walls)
+
+    def constrain(self, of_faces: np.ndarray, dt: float | None = None, rehearse: bool = False) -> None:
+        """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill their ghosts.
+
+        The ghosts of the faces are then to be filled again. ``of_faces`` are the sums of what the faces give,
+        which hold nodes against the walls.
+        """
         touched, solved = [wall for wall in self.walls if wall.touches], dt is not None
-        if not touched:
-            return
         for wall in touched:
             wall.act(rehearse, dt)
         for turn in range(SWEEPS):
@@ -162,12 +169,9 @@ class Walls:
             for wall in reversed(touched) if back else touched:
                 wall.sweep(back, solved)
         for wall in touched:
-            wall.count(solved)
+            wall.count(solved, of_faces)
         for wall in reversed(touched):
             wall.fill(dt)
-        last = 1 + (1 if dt is None else 2) * self.grid.dim
-        active = self.sorting.active
-        node_kernels.fill(self.window.nodes, active.faces, active.mirrors, active.plane_first, 1, last, True)
 
     def taken_up(self, flip: float) -> None:
         """Count impulses in mapping, of which particles take a part 1 - ``flip``: see ``move_particles``."""
@@ -184,7 +188,7 @@ class Walls:
 
     def fill_average(self, average: np.ndarray) -> None:
         """Fill an average, that of the ghosts of the faces too."""
-        if not any(wall.touches for wall in self.walls):
+        if not self.touched:
             return
         for wall in reversed(self.walls):
             if not wall.touches:
