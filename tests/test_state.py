@@ -75,6 +75,7 @@ NOT_COMPARED = {
         "impulse",
         "mapped",
     },
+    "Wall": {"_acting", "_after"},  # found when it acts, and used within the same step
     "WallFrames": {"_surfaces"},  # of the case, with what was found of them when it was asked for
     "ActiveNodes": {"held"},  # filled by a fold, and read by the filling of the same step
     "History": {"_next_flush"},  # wall time

@@ -182,7 +182,9 @@ def test_contact_is_held_until_it_is_decided_anew():
     held = near.at[near.at_wall][near.memory["contact"][near.at[near.at_wall]] == 1]
     assert len(held) > 4
     nodes[held, 2] = 0.3
-    one.act(False, None, simulation.operations.faces.mapped)
+    one.act(False, None)
+    for turn in range(3):
+        one.sweep(turn % 2 == 0, False)
     np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
 
 

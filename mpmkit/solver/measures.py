@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -44,11 +43,8 @@ class Measures:
     initial_height: float
     axis_position: np.ndarray
     """Horizontal position of the body's axis, m, from the grid's corner."""
-
-    @cached_property
-    def _planes(self) -> list[float | None]:
-        """Where a plane or axis of symmetry cuts each horizontal axis of the grid."""
-        return [_symmetry_plane(self.case, self.grid, a) for a in range(self.grid.dim - 1)]
+    planes: list[float | None]
+    """Where a plane or axis of symmetry cuts each horizontal axis of the grid, m."""
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
@@ -58,7 +54,7 @@ class Measures:
         planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
         middle = ends[:-1].mean(axis=1)
         axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
-        return cls(case, grid, float(ends[-1, 1]), axis)
+        return cls(case, grid, float(ends[-1, 1]), axis, planes)
 
     def __call__(self, p: Particles) -> dict[str, float | np.ndarray]:
         """All scalar measures by the names of the history's variables."""
@@ -95,7 +91,7 @@ class Measures:
         for a, (low, high) in enumerate(ends.tolist()):
             if periodic[a] or low > high:
                 continue
-            plane = self._planes[a]
+            plane = self.planes[a]
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return sum(diameters) / len(diameters) if diameters else math.nan
 

@@ -141,11 +141,12 @@ def test_mass_is_that_of_the_full_circle(validate, body, volume):
     p = simulation.particles
     off = abs(p.mass.sum() / (1000.0 * volume) - 1)
     validate("Axisymmetric cylinder, ring and ball: mass, relative error", off, below(1e-12, "0"))
-    # Of a ring: 2 pi r times its cross-section, up to the factor by which a staircase is corrected.
-    ratio = p.mass / (1000.0 * 2 * math.pi * p.position[:, 0] * (DX / 2) ** 2)
-    assert ratio == pytest.approx(ratio[0], rel=1e-12)
-    if body["kind"] == "box":
-        assert ratio[0] == pytest.approx(1.0, rel=1e-12)
+    # Of a ring: 2 pi r times its cross-section; where a curved surface cuts it, that is counted by points.
+    ratio = p.mass / (1000.0 * 2 * math.pi * p.position[:, 0] * 4 * p.half_size.prod(axis=1))
+    whole = (p.half_size == DX / 4).all(axis=1)
+    assert whole.mean() > 0.6
+    assert ratio[whole] == pytest.approx(1.0, rel=1e-12 if body["kind"] == "box" else 5e-3)
+    assert ratio[~whole] == pytest.approx(1.0, rel=0.02)
 
 
 @each_shape
