@@ -64,6 +64,7 @@ NOT_COMPARED = {
     }
     | {
         "foot_weight",
+        "free",
         "share",
         "stiffness",
         "velocity",

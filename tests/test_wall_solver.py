@@ -188,6 +188,38 @@ def test_contact_is_held_until_it_is_decided_anew():
     np.testing.assert_allclose(nodes[held, 2], 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("space", ["axisymmetric", "3d"])
+def test_a_mould_that_stands_on_a_floor_holds_what_is_in_it(space):
+    """Its rim is against the floor: a node there is behind its side, and nothing flows under it."""
+    cell = 0.02
+    radial = space == "axisymmetric"
+    domain = {"r": [0, 0.2]} if radial else {"x": [0, 0.2], "y": [0, 0.2]}
+    faces = {"z_min": "slip"} | ({} if radial else {"x_min": "symmetry", "y_min": "symmetry"})
+    cone = {"kind": "frustum", "bottom_radius": 0.1, "top_radius": 0.06, "height": 0.16}
+    simulation = Simulation(
+        mpmkit.parse_case(
+            {
+                "space": space,
+                "until": 1.0,
+                "grid": {"cell_size": cell, "domain": {**domain, "z": [0, 0.2]}, "faces": faces},
+                "walls": {
+                    "mould": {
+                        "surface": {"kind": "body", "shape": cone, "side": "inside", "thickness": 0.03},
+                        "contact": "slip",
+                    }
+                },
+                "bodies": [{"shape": cone, "material": CONCRETE}],
+            }
+        )
+    )
+    while simulation.time < 0.2:
+        simulation.advance()
+    place = simulation.particles.position + simulation.grid.lower
+    radius = place[:, 0] if radial else np.hypot(place[:, 0], place[:, 1])
+    assert radius.max() < 0.1
+    assert place[:, -1].max() > 0.16 - cell
+
+
 @pytest.mark.parametrize("offset", [0.37, 0.8])
 def test_drag_is_the_coefficient_times_the_push(offset):
     """Of a block that slides: what is mirrored beyond the wall pushes, and pulls, as well."""

@@ -13,6 +13,10 @@ from ..grid import Grid, Window
 
 LAG = 0.02
 """Cells that a wall may move before the nodes are sorted anew; its velocity is that of the moment."""
+UP, STANDS, FACING = 2.0, 1e-3, 0.9
+"""Cells from a face at which a wall that stands on it is looked at; cells from the face up to which it stands
+there; and cosine of the angle between its normal and that of the face from which the two are against each
+other."""
 MARGIN = 1.0
 """Cells that a wall may move before the nodes near it are looked for anew."""
 
@@ -89,7 +93,7 @@ class WallNodes:
 
     def sort(self, surface: audit.AuditedSurface, time: float) -> None:
         """Tell the nodes at the wall, the ghosts, and the nodes around the image of each."""
-        distance, self.normal = surface.distance(self.place, time)
+        distance, self.normal = self._clear_of_faces(surface, time, *surface.distance(self.place, time))
         if self.grid.radial:  # a node behind the axis sees the image of the wall
             self.normal[self.number[:, 0] < 0, 0] *= -1.0
         self.speed(surface, time)
@@ -107,6 +111,33 @@ class WallNodes:
         self.at_wall, self.ghosts = self._at_wall[:count], self._ghosts[:ghosts]
         self.behind = self._behind[:behind]
         self.sorted = True
+
+    def _clear_of_faces(
+        self, surface: audit.AuditedSurface, time: float, distance: np.ndarray, normal: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Distances and normals, with nothing of the part of a wall that stands on a face of the grid.
+
+        No material is between the two: a node there is behind the side of the wall. It sees the side as it is
+        ``UP`` cells away from the face, continued to it as a plane.
+        """
+        grid, distance, normal = self.grid, distance.copy(), normal.copy()
+        up = UP * grid.cell_size
+        for axis, side in zip(*np.nonzero(grid.walls), strict=True):
+            inward, plane = (
+                (1.0, grid.lower[axis]) if side == 0 else (-1.0, grid.lower[axis] + grid.extent[axis])
+            )
+            foot = self.place[:, axis] - distance * normal[:, axis]
+            stands = np.abs(foot - plane) < STANDS * grid.cell_size
+            on = np.flatnonzero(stands & (normal[:, axis] * inward < -FACING))
+            if not len(on):
+                continue
+            place = self.place[on].copy()
+            place[:, axis] += inward * up
+            away, direction = surface.distance(place, time)
+            seen = direction[:, axis] * inward >= -FACING
+            distance[on[seen]] = (away - inward * up * direction[:, axis])[seen]
+            normal[on[seen]] = direction[seen]
+        return distance, normal
 
     def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
         """Impulse along the normal that ghosts give to nodes at the wall, N s; below 0 where they take it."""
