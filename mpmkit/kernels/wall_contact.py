@@ -20,6 +20,9 @@ from .face_impulses import add
 from .nodes import RELEASING_STICK, STICK, holds
 from .scatter import CONTACT
 
+HELD, NONE = 0.1, 1e-9
+"""Part of Σ C² / m that is counted at least, and below which nothing is free."""
+
 
 @function()
 def find_free_axes(nodes, at, faces, dim, free):
@@ -46,7 +49,9 @@ def at_wall_velocities(
         free: (k,) bits of the axes along which no face of the grid holds the node.
         acting: (k,) which nodes have mass (out).
         share: (k, 1 + 2^dim) weights C of the node and of those around its image (out).
-        stiffness: (k, dim) Σ C² / m along each axis, 1/kg (out).
+        stiffness: (k, dim) Σ C² / m along each axis, 1/kg, of what no face holds, but at least ``HELD`` times
+            that of all: what has a small part in the velocity at the wall must not be thrown about so that
+            the sum comes right where a face holds the rest (out).
         velocity, inner: (k, dim) at the wall and at the image (out).
 
     Returns:
@@ -54,6 +59,7 @@ def at_wall_velocities(
     """
     dim = normal.shape[1]
     corners = index.shape[1]
+    whole = np.empty(dim)
     count = 0
     for k in at_wall:
         g = at[k]
@@ -70,7 +76,7 @@ def at_wall_velocities(
             velocity[count, e] = a * nodes[g, 1 + e]
             inner[count, e] = 0.0 if total > 0.0 else nodes[g, 1 + e]
             stiffness[count, e] = 0.0
-        own = a
+        own, whole[:] = a, 0.0
         for c in range(corners):
             i = index[k, c]
             part = 0.0
@@ -85,11 +91,15 @@ def at_wall_velocities(
                     own += b * part
                 else:
                     for e in range(dim):
+                        whole[e] += (b * part) ** 2 / nodes[i, 0]
                         if free[i] >> e & 1:
                             stiffness[count, e] += (b * part) ** 2 / nodes[i, 0]
         for e in range(dim):
+            whole[e] += own * own / nodes[g, 0]
             if free[g] >> e & 1:
                 stiffness[count, e] += own * own / nodes[g, 0]
+            if stiffness[count, e] < HELD * whole[e]:
+                stiffness[count, e] = HELD * whole[e] if stiffness[count, e] > NONE * whole[e] else 0.0
         acting[count] = k
         count += 1
     return count

@@ -54,7 +54,7 @@ def _corners(place, lower, shape, strides, active, taken, index, weight):
 
 @function()
 def find_nodes(
-    at, number, distance, normal, lower, shape, strides, active, taken, at_wall, ghost, index, weight,
+    at, number, distance, normal, lower, shape, strides, active, inside, taken, at_wall, ghost, index, weight,
     foot, foot_weight,
 ):  # fmt: skip
     """Sort the nodes near a wall into those at it and ghosts, with the nodes around the image of each.
@@ -65,6 +65,7 @@ def find_nodes(
         distance, normal: (k,) in cells and (k, dim).
         lower, shape, strides: of the window.
         active: (nodes,) whether particles can reach a node.
+        inside: (nodes,) the same, but for nodes behind a face of the grid, which are those of its mirror.
         taken: (nodes,) scratch, all false: becomes true at ghosts.
         at_wall, ghost: (k,) which of the k are at the wall, and which are ghosts (out).
         index, weight: (k, 2^dim) of the image of each (out).
@@ -89,12 +90,12 @@ def find_nodes(
         k = at_wall[j]
         for a in range(dim):
             place[a] = number[k, a] + normal[k, a]
-        _corners(place, lower, shape, strides, active, taken, index[k], weight[k])
+        _corners(place, lower, shape, strides, inside, taken, index[k], weight[k])
     for j in range(ghosts):
         k = ghost[j]
         for a in range(dim):
             place[a] = number[k, a] - 2.0 * distance[k] * normal[k, a]
-        _corners(place, lower, shape, strides, active, taken, index[k], weight[k])
+        _corners(place, lower, shape, strides, inside, taken, index[k], weight[k])
     for k in range(len(at)):
         taken[at[k]] = 1
     for j in range(count):
@@ -103,7 +104,7 @@ def find_nodes(
         k = ghost[j]
         for a in range(dim):
             place[a] = number[k, a] - distance[k] * normal[k, a]
-        _corners(place, lower, shape, strides, active, taken, foot[k], foot_weight[k])
+        _corners(place, lower, shape, strides, inside, taken, foot[k], foot_weight[k])
     for k in range(len(at)):
         taken[at[k]] = 0
     for j in range(ghosts):
@@ -112,7 +113,9 @@ def find_nodes(
 
 
 @function()
-def find_images(at, number, distance, normal, lower, shape, strides, active, taken, behind, index, weight):
+def find_images(
+    at, number, distance, normal, lower, shape, strides, active, inside, taken, behind, index, weight
+):
     """Nodes behind a wall, and the nodes around the image of each: for averages of scalars."""
     dim = number.shape[1]
     count = 0
@@ -121,7 +124,7 @@ def find_images(at, number, distance, normal, lower, shape, strides, active, tak
         if active[at[k]] and -GHOST < distance[k] < 0.0:
             for a in range(dim):
                 place[a] = number[k, a] - 2.0 * distance[k] * normal[k, a]
-            if _corners(place, lower, shape, strides, active, taken, index[k], weight[k]):
+            if _corners(place, lower, shape, strides, inside, taken, index[k], weight[k]):
                 behind[count] = k
                 count += 1
     return count

@@ -122,7 +122,9 @@ class Wall:
                 position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense,
                 w.touched,
             )  # fmt: skip
-        if before and not self.touches:
+        if self.touches:
+            w.take_from_faces()
+        elif before:
             w.forget()
 
     def fold(self, momentum: bool, forces: bool) -> None:

@@ -7,7 +7,8 @@ import numpy as np
 from ...contracts import Contact
 from ...contracts.contact import initial_memory
 from ...kernels import ghosts, wall_contact, wall_nodes, wall_reach
-from ...kernels.nodes import OPEN
+from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.scatter import CONTACT, PUSHED, TOUCHED
 from ...registry import audit
 from ..grid import Grid, Window
 
@@ -17,6 +18,8 @@ UP, STANDS, FACING = 2.0, 1e-3, 0.9
 """Cells from a face at which a wall that stands on it is looked at; cells from the face up to which it stands
 there; and cosine of the angle between its normal and that of the face from which the two are against each
 other."""
+OVER = 0.7
+"""Cosine of the angle of a wall against a face, by their normals, above which it can come over the face."""
 MARGIN = 1.0
 """Cells that a wall may move before the nodes near it are looked for anew."""
 
@@ -45,6 +48,7 @@ class WallNodes:
         self.places = grid.lower + places * grid.cell_size
         self.faces = _faces_at(grid, number)
         self.sides = (number == grid.cells).astype(np.uint8)
+        self._inside = active * _in_front_of_faces(grid, number)
         self.free = np.zeros(len(active), dtype=np.int64)
         count = len(active)
         self.dense = np.full(count, wall_nodes.FAR)
@@ -100,7 +104,7 @@ class WallNodes:
         self.d = distance / self.grid.cell_size
         self.dense[self.at] = self.d
         self._taken[:] = 0
-        of_window = (self.lower, self.shape, self.strides, self.active, self._taken)
+        of_window = (self.lower, self.shape, self.strides, self.active, self._inside, self._taken)
         count, ghosts = wall_nodes.find_nodes(
             self.at, self.number, self.d, self.normal, *of_window, self._at_wall, self._ghosts, self.index,
             self.weight, self.foot, self.foot_weight,
@@ -110,6 +114,7 @@ class WallNodes:
         )
         self.at_wall, self.ghosts = self._at_wall[:count], self._ghosts[:ghosts]
         self.behind = self._behind[:behind]
+        self._find_covered()
         self.sorted = True
 
     def _clear_of_faces(
@@ -138,6 +143,23 @@ class WallNodes:
             distance[on[seen]] = (away - inward * up * direction[:, axis])[seen]
             normal[on[seen]] = direction[seen]
         return distance, normal
+
+    def _find_covered(self) -> None:
+        """Find the nodes on faces of the grid that the wall has come over: it is before them, or on them."""
+        index, bits = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+        for axis in range(self.grid.dim):
+            for side, inward in enumerate((1.0, -1.0)):
+                on_face = self.number[:, axis] == (0 if side == 0 else self.grid.cells[axis])
+                over = on_face & (self.d <= wall_reach.TOUCH) & (self.normal[:, axis] * inward > OVER)
+                index.append(self.at[over])
+                bits.append(np.full(int(over.sum()), (TOUCHED | PUSHED) << axis))
+        self.covered, self._covered_bits = np.concatenate(index), np.concatenate(bits)
+
+    def take_from_faces(self) -> None:
+        """Make the faces let go of the nodes that the wall has come over: it is what the material meets."""
+        if len(self.covered):
+            contact = self.window.nodes[self.covered, CONTACT].astype(np.int64)
+            self.window.nodes[self.covered, CONTACT] = contact & ~self._covered_bits
 
     def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
         """Impulse along the normal that ghosts give to nodes at the wall, N s; below 0 where they take it."""
@@ -175,3 +197,15 @@ def _faces_at(grid: Grid, number: np.ndarray) -> np.ndarray:
         for side, plane in enumerate((0, int(grid.cells[axis]))):
             faces[number[:, axis] == plane, axis] = grid.faces[axis, side]
     return faces
+
+
+def _in_front_of_faces(grid: Grid, number: np.ndarray) -> np.ndarray:
+    """Whether nodes are in the domain, or beyond a face that mirrors nothing, ``(n,)``, uint8."""
+    inside = np.ones(len(number), dtype=np.uint8)
+    for axis in range(grid.dim):
+        low, high = grid.faces[axis]
+        if low not in (OPEN, PERIODIC):
+            inside[number[:, axis] < 0] = 0
+        if high not in (OPEN, PERIODIC):
+            inside[number[:, axis] > grid.cells[axis]] = 0
+    return inside
