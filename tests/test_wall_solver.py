@@ -11,6 +11,7 @@ import pytest
 import xarray
 
 import mpmkit
+from mpmkit.errors import CaseError
 from mpmkit.kernels import ghosts, wall_contact, wall_reach
 from mpmkit.solver.simulation import Simulation
 
@@ -510,10 +511,6 @@ def test_a_plate_that_drags_a_fluid_creates_no_energy():
 
 # --- Beside a face of the grid ------------------------------------------------------------------------------
 
-HOLDS = pytest.mark.xfail(
-    reason="a plane of symmetry goes on holding nodes that a moving wall has come over", strict=True
-)
-
 
 @pytest.mark.parametrize(
     ("face", "contact", "gap"),
@@ -525,7 +522,6 @@ HOLDS = pytest.mark.xfail(
         ("stick", "slip", 0.0),
         ("stick", "stick", 0.0),
         ({"kind": "friction", "coefficient": 0.5}, "slip", 0.0),
-        pytest.param("symmetry", "slip", 0.0, marks=HOLDS),
     ],
 )
 def test_a_piston_that_starts_at_a_face_throws_nothing(face, contact, gap):
@@ -541,3 +537,20 @@ def test_a_piston_that_starts_at_a_face_throws_nothing(face, contact, gap):
     for _ in range(19):
         simulation.advance()
         assert simulation.particles.velocity[:, 0].max() < 1.1
+
+
+@pytest.mark.parametrize(("face", "point", "speed"), [("x_min", -0.5, 0.5), ("x_max", 1.0, -0.5)])
+def test_no_wall_moves_into_the_scene_from_a_plane_of_symmetry(face, point, speed):
+    """The plane would go on holding the nodes that the wall has come over."""
+    motion = {"kind": "velocity", "velocity": [speed, 0.0]}
+    walls = {"piston": wall([point, 0.0], [math.copysign(1, speed), 0.0], "slip", motion=motion)}
+    for kind in ("slip", "symmetry"):
+        data = scene(walls, faces={face: kind})
+        if kind == "slip":
+            mpmkit.parse_case(data)
+        else:
+            sentence = f"piston.surface moves into the scene from {face}, a plane of symmetry"
+            with pytest.raises(CaseError, match=sentence):
+                mpmkit.parse_case(data)
+    along = wall([0.0, 0.1], [0.0, 1.0], "slip", motion=motion)  # its velocity is along itself
+    mpmkit.parse_case(scene({"floor": along}, faces={face: "symmetry"}))

@@ -19,6 +19,10 @@ POINTS = 1 << 14
 """Most points of the domain at which it is looked for."""
 MOST_SPEED = 1e6
 """m/s; faster than anything that a wall is, and slow enough for what follows from it to be a number."""
+FACE_POINTS, FACE_TIMES = 33, 17
+"""Points along each axis of a face, and times in a run, at which a wall is looked for on it."""
+REACHED, OVER = 0.02, 0.7
+"""Cells to which a wall has reached a face; cosine of the angle of their normals above which it covers it."""
 ROUNDING = 1e-9
 """Part of a cell by which a shell may be thinner than one."""
 
@@ -66,6 +70,31 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
             f"{where} is outside the domain of the grid at all times of the run, so that no material can "
             "touch it; move it, or leave the wall out"
         )
+    plane = _leaves_a_plane_of_symmetry(surface, case)
+    if plane is not None:
+        raise ValueError(
+            f"{where} moves into the scene from {plane}, a plane of symmetry, which goes on holding the "
+            f"material there; let grid.faces.{plane} be 'open', or 'slip'"
+        )
+
+
+def _leaves_a_plane_of_symmetry(surface: audit.AuditedSurface, case: Case) -> str | None:
+    """The plane of symmetry over which a wall moves inwards, if there is one; looked for at some times."""
+    cell = case.grid.cell_size
+    lower, upper = case.domain_bounds
+    for face in (name for name, kind in case.grid.faces.items() if kind == "symmetry"):
+        axis, inward = case.space_.axes.index(face[0]), 1.0 if face.endswith("min") else -1.0
+        ends = [np.linspace(low, high, FACE_POINTS) for low, high in zip(lower, upper, strict=True)]
+        ends[axis] = (lower if inward > 0 else upper)[axis : axis + 1]
+        points = np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1).reshape(-1, len(ends))
+        for time in np.linspace(0.0, case.until, FACE_TIMES):
+            if not surface.present(time) or not surface.fastest(time, time) > 0:
+                continue
+            distance, normal = surface.distance(points, time)
+            over = (distance <= REACHED * cell) & (normal[:, axis] * inward > OVER)
+            if over.any() and (surface.velocity(points[over], time)[:, axis] * inward > 0).any():
+                return face
+    return None
 
 
 def _comes_into_the_domain(surface: audit.AuditedSurface, case: Case) -> bool:
