@@ -1,4 +1,4 @@
-"""A stiff block that friction must hold on an incline, on a face of the grid and on a plane between the nodes.
+"""A stiff block that friction must hold on an incline: on a face of the grid, and on a plane between nodes.
 
 It is let go without stress: its push on the wall swings between nothing and twice its weight, and while it is
 less than tan θ/μ of the weight the block slides. Once that has rung down it stays.
