@@ -90,9 +90,10 @@ def test_a_film_keeps_its_speed_its_height_and_its_density(validate, name):
     p, number, mass = simulation.particles, len(simulation.particles), simulation.particles.mass.sum()
     drive, _ = down_slope(fluid.density, degrees)
     exact = fluid.half_discharge(drive, THICK) / THICK
-    shear, speed, height, density = [], [], [], []
+    shear, speed, height, density, across = [], [], [], [], []
     for time in at(simulation, np.linspace(0, until, STOPS + 1)[1:]):
         shear.append(exact * time / THICK)
+        across.append(mean_of(simulation, p.velocity[:, 1]) / exact)
         speed.append(mean_of(simulation, p.velocity[:, 0]) / exact)
         height.append(2 * mean_of(simulation, p.position[:, 1]) / THICK)
         density.append(simulation.measures(p)["density_mean"])
@@ -111,8 +112,8 @@ def test_a_film_keeps_its_speed_its_height_and_its_density(validate, name):
         validate(f"Film, {name}, {until:g} s: {text}, worst", worst, close_to(1.0, rel=rel))
     assert len(p) == number
     assert p.mass.sum() == mass
-    # Nothing drives it across the floor; what there is of it is the sound that is left.
-    assert abs(mean_of(simulation, p.velocity[:, 1])) < 1e-3 * exact
+    # Nothing drives it across the floor; what there is at a moment, 1e-3, is sound, and its mean is none.
+    assert abs(np.mean(across[late])) < 1e-3
 
 
 # --- A pipe
