@@ -125,7 +125,7 @@ def coarser(case: Case) -> Case:
 
 
 def _thinnest(case: Case) -> float:
-    """Thickness, m, of the thinnest wall, which must hold a cell; infinite where there is none."""
+    """Thickness, m, of the thinnest wall; infinite if there is no wall. No cell may be larger than that."""
     with blaming_plugins(plugins_of(case)):
         surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
         return min((surface.thickness for surface in surfaces), default=math.inf)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...case.walls import OVER
 from ...contracts import Contact
 from ...contracts.contact import initial_memory
 from ...kernels import ghosts, wall_contact, wall_nodes, wall_reach
@@ -18,8 +19,6 @@ UP, STANDS, FACING = 2.0, 1e-3, 0.9
 """Cells from a face at which a wall that stands on it is looked at; cells from the face up to which it stands
 there; and cosine of the angle between its normal and that of the face from which the two are against each
 other."""
-OVER = 0.7
-"""Cosine of the angle of a wall against a face, by their normals, above which it can come over the face."""
 MARGIN = 1.0
 """Cells that a wall may move before the nodes near it are looked for anew."""
 
