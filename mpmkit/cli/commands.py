@@ -16,6 +16,8 @@ from . import (
     bench,
     chart,
     compare,
+    completion,
+    doctor,
     new_plugin,
     options,
     plan,
@@ -99,6 +101,8 @@ for module in (
     plugins,
     new_plugin,
     schema,
+    doctor,
+    completion,
 ):
     commands.add_command(module.command)
 for command in commands.commands.values():

@@ -8,11 +8,17 @@ from typing import Any
 import click
 
 from . import options
+from .command import with_examples
 from .duration import SECONDS
 from .paths import PATH
 
 
-@click.command("run")
+@with_examples(
+    "run",
+    "mpmkit run cases/slump_fast.json",
+    "mpmkit run cases/slump_fast.json --until 0.5 --set bodies.0.material.yield_stress=400 --out runs/stiff",
+    "mpmkit run --resume runs/stiff --until 0.6",
+)
 @click.argument("case", type=PATH, required=False)
 @options.out
 @options.set_values
