@@ -121,6 +121,8 @@ NEARLY_JSON = {
     "typographic quotes": ("{“until”: 1}", "line 1, column 2", "JSON has double quotes"),
     "YAML": ("space: 3d\nuntil: 4\n", "line 1, column 1", "YAML begins, and JSON is needed"),
     "YAML with a comment": ("# a\n\nspace: 3d\n", "line 1, column 1", "YAML begins, and JSON is needed"),
+    "YAML with a directive": ("%YAML 1.2\n---\nspace: 3d\n", "line 1, column 1", "YAML begins, and JSON"),
+    "a list in YAML": ("- space: 3d\n", "line 1, column 1", "convert the file, or write braces around all"),
     "TOML": ("[grid]\ncell_size = 0.1\n", "line 1, column 1", "TOML begins, and JSON is needed"),
     "no quotes": ("{until: 1}", "line 1, column 2", 'must stand in double quotes: "until"'),
     "Python's True": ('{"a": True}', "line 1, column 7", "True must be written as true"),

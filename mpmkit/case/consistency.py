@@ -20,9 +20,8 @@ from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .state_variables import state_variables
 from .synonyms import nearest
 from .walls import check_walls
+from .whole_cells import WHOLE, cells_along, extend_domain
 
-WHOLE = 1e-6
-"""How far, in cells, a length may be from a whole number of cells and still count as whole."""
 MOST_CELLS = 2**30
 """Cells along an axis: the first node of a particle is a 32-bit integer."""
 MOST_SPEED = 1e12
@@ -106,20 +105,15 @@ def _check_domain(case: Case) -> None:
             raise ValueError(
                 f"grid.domain.{axis} is [{lower:g}, {upper:g}]; the lower end must be below the upper one"
             )
-        cells = (upper - lower) / cell
-        if cells > MOST_CELLS:
+        if (cells := cells_along(case, axis)) > MOST_CELLS:
             raise ValueError(
                 f"grid.domain.{axis} has {cells:.3g} cells of {cell:g} m; at most {MOST_CELLS:,} are possible"
-            )
-        if abs(cells - round(cells)) > WHOLE * max(1.0, cells) or round(cells) < 1:
-            raise ValueError(
-                f"grid.domain.{axis} is {cells:.6g} cells long; it must be a whole number of cells of "
-                f"{cell:g} m, such as [{lower:g}, {lower + max(1, round(cells)) * cell:g}]"
             )
     if case.space_.radial and domain["r"][0] != 0:
         raise ValueError(
             f"grid.domain.r begins at {domain['r'][0]:g}; it must begin at the axis of symmetry, r = 0"
         )
+    extend_domain(case)
 
 
 def _check_faces(case: Case) -> None:

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
 from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Surface, quantity
 from ..contracts.order import UpdateOrder
@@ -40,6 +40,17 @@ class Grid(Model):
     faces: dict[str, Face] = Field(
         default={}, description="condition on each face, such as z_min; a face that is not named is open"
     )
+
+    _extensions: list[str] = PrivateAttr(default_factory=list)
+
+    @property
+    def extensions(self) -> tuple[str, ...]:
+        """Sentences on the axes along which the domain was extended to whole cells; see ``whole_cells``."""
+        return tuple(self._extensions)
+
+    def note_extension(self, sentence: str) -> None:
+        """Keep a sentence, for the log of the run."""
+        self._extensions.append(sentence)
 
 
 class Material(Model):

@@ -6,11 +6,14 @@ from pathlib import Path
 
 import click
 
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
 
-@click.command("report")
+@with_examples(
+    "report", "mpmkit run cases/slump_fast.json --until 0.2 --out runs/short", "mpmkit report runs/short"
+)
 @click.argument("directory", type=PATH)
 def command(directory: str) -> None:
     """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH, refuse_existing
 from .printing import echo, echo_json
 
@@ -20,7 +21,7 @@ def _names(kind: str):
     )
 
 
-@click.command("stability")
+@with_examples("stability", "mpmkit stability cases/vibrating_bar.json --order usl,usf --until 10")
 @options.case_file
 @_names("shape")
 @_names("order")

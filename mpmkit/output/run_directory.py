@@ -21,6 +21,8 @@ PARTIAL = ".*.partial"
 """What a killed process may have left."""
 PICTURES = ("outline", "spread_and_height", "energies", "wall_forces")
 """Names of the pictures of a report, without their ending."""
+MOVIE = "movie.gif"
+"""The movie that ``mpmkit movie`` writes beside the pictures."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
 
@@ -59,6 +61,10 @@ class RunDirectory:
     @property
     def report(self) -> Path:
         return self.path / "report"
+
+    @property
+    def movie(self) -> Path:
+        return self.report / MOVIE
 
     @property
     def checkpoints(self) -> Path:
@@ -134,6 +140,7 @@ class RunDirectory:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
         written = [self.history, self.summary, *self.path.glob(PARTIAL)]
         pictures = [self.report / f"{name}.png" for name in PICTURES]
+        pictures.append(self.movie)
         frames = [*frame_files(self.frames), self.frames / LIST_NAME, self.frames / WALL_LIST]
         folders = [(self.frames, frames), (self.report, pictures)]
         if not self.frames.is_symlink():  # else it is the link that goes

@@ -38,7 +38,8 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
         ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
         each, at the start), ``memory_bytes`` (at the end), ``checkpoint_bytes`` (more, while a
-        checkpoint is written), ``expected_seconds``, ``remarks`` (of the laws),
+        checkpoint is written), ``expected_seconds``, ``remarks`` (of the domain and
+        the laws),
         ``warnings``, ``expected_error`` (of the spread, see ``advice``; None if not known), ``cheaper``
         (models, each with ``name``, ``why``, ``changes`` by path, ``options`` for the command line,
         ``particles``, ``steps``, ``expected_seconds`` and ``expected_error``).
@@ -103,7 +104,7 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
         "expected_seconds": steps * _mean_seconds(start, particles, growth, case.until / steps),
-        "remarks": remarks,
+        "remarks": [*case.grid.extensions, *remarks],
         "warnings": warnings + start.stopped,
     }
 

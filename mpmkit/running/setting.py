@@ -16,8 +16,8 @@ FLOORS = {
 
 
 def setting(case: Case) -> list[str]:
-    """Sentences on the floor, on the release of the material, and on the walls."""
-    return [*_floor_and_release(case), *wall_sentences(case)]
+    """Sentences on the domain, on the floor, on the release of the material, and on the walls."""
+    return [*case.grid.extensions, *_floor_and_release(case), *wall_sentences(case)]
 
 
 def _floor_and_release(case: Case) -> list[str]:

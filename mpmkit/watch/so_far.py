@@ -1,0 +1,98 @@
+"""What a run has written so far."""
+
+from __future__ import annotations
+
+import json
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..output import RunDirectory
+from ..output.netcdf import read_dataset
+
+MOST_ROWS = 1000
+"""Of a history that is sent: a screen has no more columns."""
+NOTHING = "nothing yet"
+"""Version of a run that has not written a row."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """A scalar of the history."""
+
+    label: str
+    unit: str
+    values: list[float | None]
+
+
+class SoFar:
+    """The history of a run at work, read when it has changed.
+
+    Args:
+        directory: of the run.
+        resumed: whether a history that is there now is of this run, and not of one that it replaces.
+    """
+
+    def __init__(self, directory: Path, resumed: bool) -> None:
+        self.run = RunDirectory(directory)
+        self._of_another = NOTHING if resumed else self._written()
+        self._lock = threading.Lock()
+        self._read = (NOTHING, self._empty())
+
+    def version(self) -> str:
+        """Another text whenever the run has written another history."""
+        written = self._written()
+        return NOTHING if written == self._of_another else written
+
+    def history(self) -> dict[str, Any]:
+        """``version``, ``name``, ``until`` (s), ``time`` (s) and ``series`` by name."""
+        with self._lock:
+            version = self.version()
+            if version != self._read[0]:
+                self._read = (version, self._empty() if version == NOTHING else self._load(version))
+            return self._read[1]
+
+    def _written(self) -> str:
+        try:
+            found = self.run.history.stat()
+        except OSError:
+            return NOTHING
+        return f"{found.st_mtime_ns}-{found.st_ino}"
+
+    def _empty(self) -> dict[str, Any]:
+        return {
+            "version": NOTHING,
+            "name": self.run.path.resolve().name,
+            "until": None,
+            "time": [],
+            "series": {},
+        }
+
+    def _load(self, version: str) -> dict[str, Any]:
+        """Read the history; where it is being replaced at this very moment, the next look finds it."""
+        try:
+            dataset = read_dataset(self.run.history)
+            case = json.loads(self.run.case.read_text(encoding="utf-8"))
+        except (OSError, ValueError, RuntimeError):
+            return self._empty()
+        rows = np.unique(np.linspace(0, dataset.sizes["time"] - 1, MOST_ROWS).round().astype(int))
+        series = {
+            str(name): Series(str(one.attrs["long_name"]), str(one.attrs["units"]), _listed(one.values[rows]))
+            for name, one in dataset.data_vars.items()
+            if one.dims == ("time",)
+        }
+        return {
+            "version": version,
+            "name": str(case.get("name", self.run.path.name)),
+            "until": case.get("until"),
+            "time": _listed(dataset["time"].values[rows]),
+            "series": {name: vars(one) for name, one in series.items()},
+        }
+
+
+def _listed(values: np.ndarray) -> list[float | None]:
+    """Numbers as JSON has them; None for what is not finite."""
+    return [float(value) if np.isfinite(value) else None for value in values]
