@@ -11,10 +11,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import PluginFault
+from ..output.columns import COLUMNS
 from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
+from .ending import Until
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .state_variables import state_variables
@@ -52,11 +54,25 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    _check_until(case)
     check_walls(case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
-        _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+        _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
+
+
+def _check_until(case: Case) -> None:
+    scalars = [column.name for column in COLUMNS if not column.component]
+    for name in case.until.variables if isinstance(case.until, Until) else ():
+        if name not in scalars:
+            near = nearest(name, ["at_most", "rest", *scalars])
+            hint = (
+                f"did you mean '{near}'?" if near else f"it may have at_most, rest, and {', '.join(scalars)}"
+            )
+            raise ValueError(
+                f"until has the key '{name}', which is no scalar variable of the history; {hint}"
+            )
 
 
 def _check_particle_history(case: Case) -> None:

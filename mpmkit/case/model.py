@@ -23,6 +23,7 @@ from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
+from .ending import AnyUntil, latest
 from .faces import Face
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
@@ -194,7 +195,7 @@ class Case(Model):
     )
     description: str = ""
     space: Literal["3d", "plane-strain", "axisymmetric"]
-    until: float = quantity("s", "simulated time", gt=0)
+    until: AnyUntil = quantity("s", "simulated time, or conditions that end the run before a time at_most")
     gravity: list[float] | None = quantity(
         "m/s^2", "acceleration along each axis; default: 9.81 down the last axis", default=None
     )
@@ -212,6 +213,11 @@ class Case(Model):
     def space_(self) -> Space:
         """The space as an object that knows its axes."""
         return SPACES[self.space]
+
+    @property
+    def end(self) -> float:
+        """Time, s, at which the run ends at the latest."""
+        return latest(self.until)
 
     @cached_property
     def domain_bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -166,7 +166,7 @@ def _part_near(surface: audit.AuditedSurface, case: Case) -> float:
 
 def _kept_rows(case: Case) -> float:
     interval = case.output.history_interval
-    return ROWS if interval is None else case.until / interval
+    return ROWS if interval is None else case.end / interval
 
 
 def _doubles_per_row(case: Case) -> int:
