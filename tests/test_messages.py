@@ -183,11 +183,12 @@ def test_what_is_said_to_install_is_what_the_extras_hold():
     """By the names of the packages, so that it works outside a registry that has mpmkit."""
     root = Path(__file__).parents[1]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    texts = {file: file.read_text(encoding="utf-8") for file in (*root.glob("docs/**/*.md"), root / "README.md")}
+    pages = (*root.glob("docs/**/*.md"), root / "README.md")
+    texts = {file: file.read_text(encoding="utf-8") for file in pages}
     texts |= {file: file.read_text(encoding="utf-8") for file in root.glob("mpmkit/**/*.py")}
     assert not [str(file) for file, text in texts.items() if re.search(r"pip install\s+'?mpmkit\[", text)]
     for extra, requirements in extras.items():
-        if extra in ("mesh", "cluster"):
+        if extra in ("mesh", "cluster", "movie"):
             said = [text for text in texts.values() if f"pip install '.[{extra}]'" in text]
             assert said, extra
             names = " ".join(re.split(r"[><=]", requirement)[0] for requirement in requirements)

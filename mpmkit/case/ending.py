@@ -13,8 +13,8 @@ from .base import Model
 class Bounds(Model):
     """What a variable of the history has to come to."""
 
-    at_least: float | None = Field(default=None, description="the variable is this or more, in its own unit")
-    at_most: float | None = Field(default=None, description="the variable is this or less, in its own unit")
+    at_least: float | None = quantity("unit of the variable", "the variable is this or more", default=None)
+    at_most: float | None = quantity("unit of the variable", "the variable is this or less", default=None)
 
     @model_validator(mode="after")
     def _bounds_something(self) -> Bounds:
