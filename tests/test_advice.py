@@ -370,3 +370,12 @@ def test_a_run_of_seconds_needs_no_advice():
     assert cost["expected_error"] == next(
         float(row["error"]) for row in fast if schemes.items() <= row.items()
     )
+
+
+def test_navier_slip_says_how_wrong_its_slip_may_be():
+    def contact(length):
+        slips = f'walls.mould.contact={{"kind": "navier-slip", "slip_length": {length}}}'
+        return " ".join(cautions(load_case(CASES / "slump_lifted.json", [slips])))
+
+    assert "too large, by 9 to 93 %" in contact(0.01)
+    assert "navier" not in contact(0)
