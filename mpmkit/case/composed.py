@@ -25,6 +25,7 @@ from ..contracts import ConstitutiveLaw, Plugin
 from ..registry import Registry, installed
 from .consistency import check
 from .model import Body, Case, Material, Scheme, Wall
+from .output import OutputSettings
 
 
 class CheckedCase(Case):
@@ -91,6 +92,11 @@ def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
     return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
 
 
+def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
+    """Annotation of a field that holds plug-ins by names of the user's."""
+    return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
+
+
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
     own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
     base = type("Material", (Material,), {"law_class": law, "__module__": Material.__module__})
@@ -138,6 +144,13 @@ def case_model(registry: Registry) -> type[Case]:
         surface=_named(registry, "surface"),
         contact=_named(registry, "contact"),
     )
+    output = create_model(
+        "OutputSettings",
+        __base__=OutputSettings,
+        __doc__=OutputSettings.__doc__,
+        diagnostics=_by_name(registry, "diagnostic", OutputSettings.model_fields["diagnostics"]),
+        fields=_by_name(registry, "particle_field", OutputSettings.model_fields["fields"]),
+    )
     model = create_model(
         "Case",
         __base__=CheckedCase,
@@ -145,6 +158,7 @@ def case_model(registry: Registry) -> type[Case]:
         bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
         scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),
+        output=(output, Field(default={}, validate_default=True, description="what the run writes")),
     )
     model.registry = registry
     return model

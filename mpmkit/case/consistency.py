@@ -16,12 +16,13 @@ from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
+from .diagnostics import diagnostic_columns
 from .ending import Until
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
-from .state_variables import state_variables
+from .state_variables import TAKEN, former_names, state_variables
 from .synonyms import nearest
-from .walls import check_walls
+from .walls import NAME, check_walls
 from .whole_cells import WHOLE, cells_along, extend_domain
 
 MOST_CELLS = 2**30
@@ -54,6 +55,7 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    _check_measured(case)
     _check_until(case)
     check_walls(case)
     _check_time_step(case)
@@ -62,8 +64,30 @@ def check(case: Case) -> None:
     _check_particle_history(case)
 
 
+def _check_measured(case: Case) -> None:
+    """Diagnostics fit the scene, and fields have names of their own."""
+    for what in ("diagnostics", "fields"):
+        for name in getattr(case.output, what):
+            if not NAME.fullmatch(name):
+                raise ValueError(
+                    f"output.{what} has the name {shown(name)}; it must be of letters, digits, '_' and '-'"
+                )
+    walls = [*case.walls, *case.space_.faces]
+    for name, diagnostic in case.output.diagnostics.items():
+        with blaming_plugins([("diagnostic", diagnostic)]):
+            problem = diagnostic.problem(case.space_, walls)
+        if problem is not None:
+            raise ValueError(f"output.diagnostics.{name}: {problem}")
+    for name in case.output.fields:
+        if name in TAKEN or name in former_names(case):
+            raise ValueError(
+                f"output.fields has the name '{name}', which another particle field has; choose another name"
+            )
+
+
 def _check_until(case: Case) -> None:
     scalars = [column.name for column in COLUMNS if not column.component]
+    scalars += [column.name for column in diagnostic_columns(case)]
     for name in case.until.variables if isinstance(case.until, Until) else ():
         if name not in scalars:
             near = nearest(name, ["at_most", "rest", *scalars])
@@ -76,9 +100,9 @@ def _check_until(case: Case) -> None:
 
 
 def _check_particle_history(case: Case) -> None:
-    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case), *case.output.fields]
     for number, name in enumerate(case.output.particle_history):
-        if name not in allowed:
+        if name not in allowed and name not in former_names(case):
             raise ValueError(
                 f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
                 f"{_meant(name, allowed)}"

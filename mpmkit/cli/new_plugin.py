@@ -21,6 +21,8 @@ KINDS = [
     "equation_of_state",
     "surface",
     "contact",
+    "diagnostic",
+    "particle_field",
 ]
 
 

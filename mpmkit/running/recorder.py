@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from ..case.diagnostics import diagnostic_columns
 from ..case.output import FRAMES, ROWS
-from ..case.state_variables import state_variables
-from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory
+from ..case.state_variables import particle_variables
+from ..output import FrameWriter, History, RunDirectory
 from ..output.columns import COLUMNS, wall_columns
 from ..output.flow import arrays_of, write_flow
 from ..solver.particle_fields import frame_fields, history_fields
@@ -45,9 +46,9 @@ class Recorder:
         settings, end = case.output, case.end
         self.simulation = simulation
         self.directory = directory
-        variables = PARTICLE_VARIABLES | state_variables(case)
+        variables = particle_variables(case)
         axes, walls = case.space_.axes, simulation.wall_names
-        columns = COLUMNS + (wall_columns(axes) if walls else ())
+        columns = (*COLUMNS, *diagnostic_columns(case), *(wall_columns(axes) if walls else ()))
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
@@ -128,7 +129,8 @@ class Recorder:
         values = simulation.measured()
         if simulation.wall_names:
             values |= self._wall_means()
-        kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
+        with simulation.blaming:
+            kept = history_fields(simulation)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
@@ -149,7 +151,9 @@ class Recorder:
         assert self.wall_frames is not None
         simulation, particles = self.simulation, self.simulation.particles
         position = particles.position + simulation.grid.lower
-        self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
+        with simulation.blaming:
+            fields = frame_fields(simulation)
+        self.frames.write(simulation.time, simulation.steps, fields, position)
         with simulation.blaming:
             self.wall_frames.add(simulation.time, simulation.steps)
         self._last_frame = simulation.steps

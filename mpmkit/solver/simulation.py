@@ -11,6 +11,7 @@ from ..case.plugins import plugins_of
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
+from .diagnosed import diagnosed
 from .grid import Grid
 from .guards import Guards, stop
 from .measures import Measures
@@ -208,11 +209,13 @@ class Simulation:
 
     def measured(self) -> dict[str, float | np.ndarray]:
         """What the history records of every scene, by the names of its variables, at the present step."""
-        return self.measures(self.particles) | {
+        found = self.measures(self.particles) | {
             "redistribution_energy": self.redistribution_energy,
             "time_step": self.time_step,
             "mach_number": self.mach_number,
         }
+        with self.blaming:
+            return found | diagnosed(self)
 
     @property
     def mapped_mass(self) -> float | None:
