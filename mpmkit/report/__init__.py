@@ -1,4 +1,4 @@
-"""Pictures of a run, drawn from its directory alone, so that they can be drawn again at any time."""
+"""Page and pictures of a run, made from its directory alone, so that they can be made again at any time."""
 
 from __future__ import annotations
 
@@ -12,16 +12,19 @@ __all__ = ["write_report"]
 
 
 def write_report(run_directory: Path) -> list[Path]:
-    """Draw the pictures of a run into its ``report/``; what the run did not record is left out.
+    """Draw the pictures of a run into its ``report/``, and write its page.
+
+    What the run did not record is left out.
 
     Returns:
-        The PNG files written.
+        The files written: PNG files, and last the page.
 
     Raises:
         CaseError: where the directory does not hold a run.
-        OutputError: where a picture cannot be written.
+        OutputError: where a file cannot be written.
     """
     from . import energies, outline, spread_and_height, wall_forces  # matplotlib is loaded only to draw
+    from .page import write_page
     from .run_results import read_results
     from .style import DPI, figure_style
 
@@ -42,4 +45,4 @@ def write_report(run_directory: Path) -> list[Path]:
             with replacing(path) as partial:
                 figure.savefig(partial, format="png", dpi=DPI)
         written.append(path)
-    return written
+    return [*written, write_page(run_directory)]

@@ -30,6 +30,7 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     """
     recorder.add_last_row()
     recorder.add_last_frame()
+    recorder.add_last_moment()
     summary = _summary(recorder, ended, wall_time)
     recorder.write()
     _write_summary(recorder, summary)
@@ -48,6 +49,7 @@ def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
     for part in (
         recorder.add_last_row,
         recorder.add_last_frame,
+        recorder.add_last_moment,
         lambda: summary.update(_summary(recorder, ended, wall_time)),
         recorder.write,
         lambda: _write_summary(recorder, summary),

@@ -9,9 +9,11 @@ import numpy as np
 from ..case.output import FRAMES, ROWS
 from ..case.state_variables import state_variables
 from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory, Variable
+from ..output.flow import arrays_of, write_flow
 from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .flow_record import LOOKS, FlowRecord
 from .milestones import Milestones
 from .schedule import Schedule
 from .wall_frames import WallFrames
@@ -79,8 +81,10 @@ class Recorder:
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self.wall_frames = None if directory is None else WallFrames(case, directory.frames, goes_on)
+        self.flow = FlowRecord(simulation) if directory is not None and settings.report else None
         self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
         self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
+        self._flow_due = Schedule(until / LOOKS, until, settings.snapshot_times)
         self.milestones = Milestones(simulation)
         self._last_row = self._last_frame = -1  # steps
 
@@ -92,6 +96,8 @@ class Recorder:
             self.add_last_row()
         if self.frames is not None and self._frames_due.passed(now):
             self.add_last_frame()
+        if self.flow is not None and self._flow_due.passed(now):
+            self.flow.add(self.simulation)
 
     @property
     def components(self) -> dict[str, Stateful]:
@@ -101,7 +107,10 @@ class Recorder:
             "milestones": self.milestones,
             "rows_due": self._rows_due,
             "frames_due": self._frames_due,
+            "flow_due": self._flow_due,
         }
+        if self.flow is not None:
+            found["flow"] = self.flow
         if self.frames is None or self.wall_frames is None:
             return found
         return found | {"frames": self.frames, "wall_frames": self.wall_frames}
@@ -125,10 +134,20 @@ class Recorder:
         if self.frames is not None and self._last_frame != self.simulation.steps:
             self._add_frame()
 
+    def add_last_moment(self) -> None:
+        """Add the present step to the flow, unless it is there."""
+        if self.flow is not None:
+            self.flow.add(self.simulation)
+
     def write(self) -> None:
-        """Write the history."""
+        """Write the history and the flow."""
         if self.directory is not None:
             self.history.write(self.directory.history)
+        self._write_flow()
+
+    def _write_flow(self) -> None:
+        if self.directory is not None and self.flow is not None:
+            write_flow(self.directory.flow, arrays_of(self.flow.moments))
 
     def _add_row(self) -> None:
         simulation, particles = self.simulation, self.simulation.particles
@@ -143,8 +162,8 @@ class Recorder:
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
-        if self.directory is not None:
-            self.history.flush_if_due(self.directory.history)
+        if self.directory is not None and self.history.flush_if_due(self.directory.history):
+            self._write_flow()
 
     def _wall_means(self) -> dict[str, np.ndarray]:
         """Force, torque and power of each wall, means over the time since the last row."""
