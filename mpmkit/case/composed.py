@@ -24,6 +24,7 @@ from pydantic_core import PydanticKnownError
 from ..contracts import ConstitutiveLaw, Plugin
 from ..registry import Registry, installed
 from .consistency import check
+from .html import case_html
 from .model import Body, Case, Material, Scheme, Wall
 from .output import OutputSettings
 
@@ -39,6 +40,10 @@ class CheckedCase(Case):
         if info.context is not _CHECKED_BEFORE:
             check(self)
         return self
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return case_html(self)
 
     def __reduce__(self) -> tuple:
         """So that a case can go to another process: its class is made anew there, of the plug-ins."""

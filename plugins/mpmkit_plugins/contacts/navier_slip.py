@@ -32,9 +32,9 @@ class NavierSlip(Slip):
         if self.slip_length == 0:
             return []
         return [
-            "contact 'navier-slip' makes the slip 5 % too small in a film of 10 cells, where the wall lies on "
-            "rows of nodes; on a wall between the rows, or at an angle to them, the slip is too large, by 9 to "
-            "93 % in the validation report: put the wall on nodes, or take the slip for an estimate"
+            "contact 'navier-slip' makes the slip 5 % too small in a film of 10 cells, where the wall lies "
+            "on rows of nodes; on a wall between the rows, or at an angle to them, the slip is too large, by "
+            "9 to 93 % in the validation report: put the wall on nodes, or take the slip for an estimate"
         ]
 
     def mapped(self, nodes: ContactNodes) -> None:
