@@ -173,3 +173,15 @@ def test_json_of_a_page_must_be_json_and_a_case_a_valid_one(run_blocks):
 )
 def test_every_block_of_a_page_does_what_the_page_says(run_blocks, page):
     assert list(run_blocks.failures(ROOT / page)) == []
+
+
+def test_what_the_failures_and_cures_quote_is_what_the_program_says():
+    """Each quotation, in pieces between the '…', stands in a string of the code."""
+    code = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "mpmkit").rglob("*.py")))
+    said = re.sub(r'"\s*\n\s*f?"', "", code).replace('\\"', '"')
+    said = re.sub(r"\{[^{}]*\}", "…", said)
+    rows = re.findall(r"^\|(.*)\|.*\|.*\|$", (ROOT / "docs/faq.md").read_text(encoding="utf-8"), re.M)
+    quoted = [quote for row in rows for quote in re.findall(r"`([^`]+ [^`]+)`", row)]
+    assert len(quoted) > 40
+    pieces = {piece for quote in quoted for piece in re.split("…", quote) if len(piece.split()) >= 3}
+    assert [piece for piece in sorted(pieces) if piece.strip(" ;:,") not in said] == []

@@ -203,7 +203,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     if not material.constitutive_law.uses_equation_of_state:
         if material.sound_speed is not None:
             raise ValueError(
-                f"{field} is given, but the law '{material.law}' has a pressure of its own; leave it out"
+                f"{field} is given, but the law '{material.law}' computes its own pressure; leave it out"
             )
     elif material.sound_speed is None:
         raise ValueError(
@@ -222,7 +222,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     speed = case.sound_speed(material)
     if speed is not None and not math.isfinite(material.density * speed * speed):
         given = f"{material.sound_speed:g}" if isinstance(material.sound_speed, float) else f"{speed:g} m/s"
-        raise ValueError(f"{field} is {given}, so that density times its square is too large for a number")
+        raise ValueError(f"{field} is {given}, and density times its square is too large to be computed")
 
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
@@ -254,8 +254,8 @@ def _check_time_step(case: Case) -> None:
         )
     if "acoustic" in ignored and ("viscous" in ignored or not viscous):
         raise ValueError(
-            f"scheme.time_step.ignore is {shown(ignored)}, which leaves nothing to limit the step of a scene "
-            "at rest; it must spare the acoustic limit"
+            f"scheme.time_step.ignore is {shown(ignored)}, but then nothing limits the time step of a "
+            "scene at rest; it must not contain 'acoustic'"
         )
 
 

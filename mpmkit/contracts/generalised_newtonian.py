@@ -84,7 +84,7 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         modulus = self._modulus(density, sound_speed)
         at_rest = self.viscosity_at(REST_SHEAR_RATE)
         return [
-            f"law '{self.name}', relaxed, follows a change of stress within mu/G, at rest "
+            f"law '{self.name}', relaxed, follows a change of stress with a delay of mu/G, at rest "
             f"{at_rest / modulus:.3g} s, G = {modulus:.4g} Pa{maxwell.cost(self, density, sound_speed)}"
         ]
 

@@ -134,8 +134,8 @@ def _too_late(
 ) -> str:
     return (
         f"law '{law.name}', with {viscosity:.3g} Pa s here, flows only after mu/{stiffness} = {delay:.2g} s, "
-        f"{100 * delay / until:.2g} % of until; up to a few times that it is {instead}, not a liquid, and "
-        f"its motion is not to be trusted; {remedy}"
+        f"{100 * delay / until:.2g} % of until; for a few times that long it behaves like {instead}, not "
+        f"like a liquid, and its motion is wrong; {remedy}"
     )
 
 

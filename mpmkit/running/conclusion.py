@@ -113,7 +113,7 @@ def _warn_of_fracture(simulation: Simulation) -> None:
     fractured = simulation.measures.fractured(simulation.particles)
     if fractured > FRACTURED and not simulation.refiner.acts:
         LOGGER.warning(
-            "at the end %.0f %% of the volume is in particles that are drawn apart further than a cell "
+            "at the end %.0f %% of the volume is in particles that are more than a cell apart "
             "(fractured_fraction): set scheme.refinement to 'split-and-merge'",
             100 * fractured,
         )
@@ -123,8 +123,8 @@ def _warn_of_energy(simulation: Simulation) -> None:
     balance = simulation.guards.balance
     if balance is not None and balance.solid and balance.most_excess > CREATED:
         LOGGER.warning(
-            "up to %.3g %% of the energy came from nowhere: the motion of the solid is not to be trusted any "
-            "better; order 'usl' takes energy instead, and a shorter step makes less of it",
+            "up to %.3g %% of energy was created: the motion of the solid is not more accurate than that; "
+            "a shorter step creates less, and order 'usl' dissipates energy instead",
             100 * balance.most_excess,
         )
 

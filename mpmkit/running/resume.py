@@ -127,7 +127,7 @@ def last_checkpoint(
     if found:
         more = f", and {len(found) - 1} more" if len(found) > 1 else ""
         raise CaseError(
-            f"the run in '{directory}' cannot go on, since it would be another one: {found[0]}{more}"
+            f"the run in '{directory}' cannot go on, because it would be a different run: {found[0]}{more}"
         )
     return state, now
 

@@ -10,7 +10,7 @@ from .wall_words import wall_sentences
 
 FLOORS = {
     "slip": "free slip, so that it does not hold the material back",
-    "symmetry": "a plane of symmetry, which is as free slip",
+    "symmetry": "a plane of symmetry, which acts like free slip",
     "stick": "stick, so that the material does not slide on it",
 }
 """What a face means as a floor, in words."""

@@ -128,14 +128,14 @@ class Simulation:
         with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
-            said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
+            said.append("the fluid rests between walls: it starts with the pressure of its weight")
         elif self.swinging is not None:
             said.append(self.swinging)
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
                     f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
-                    "an elastic modulus stays as it is"
+                    "an elastic modulus does not change"
                 )
         return list(dict.fromkeys(said))
 

@@ -30,7 +30,7 @@ class USL(UpdateOrder):
             return []
         return [
             f"order 'usl' with shape '{case.scheme.shape.name}' takes strains from nodes that are nearly "
-            "empty, and throws out particles where material flows from cell to cell; order 'usf' or 'musl', "
+            "empty, and throws out particles when material flows from cell to cell; order 'usf' or 'musl', "
             "or shape 'cpgimp', does not"
         ]
 

@@ -27,10 +27,10 @@ class NoRedistribution(Redistribution):
         if not _is_driven(case) and not any(map(_is_thin, fluids)):
             return []
         return [
-            "redistribution 'none' does not keep places and volumes of a fluid the same for longer than some "
-            f"{LONG * free_fall:.2g} s of flow: films lost half of their speed and water that swings half "
-            "of its height, and with scheme.splitting films became a third too fast; "
-            "scheme.redistribution 'even' keeps them the same"
+            "redistribution 'none' does not keep positions and volumes of a fluid consistent for longer "
+            f"than about {LONG * free_fall:.2g} s of flow: films lost half of their speed, and oscillating "
+            "water half of its height; with scheme.splitting films became a third too fast; "
+            "scheme.redistribution 'even' keeps them consistent"
         ]
 
     def redistribute(self, ops, time) -> None:
