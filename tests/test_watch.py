@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -16,8 +17,11 @@ import numpy as np
 import pytest
 from test_cli import CASE, status
 
+import mpmkit
+from mpmkit.case import parse_case
 from mpmkit.cli import terminal_plot
 from mpmkit.output import History, RunDirectory, Variable, write_json
+from mpmkit.watch.pages import Pages
 from mpmkit.watch.server import Server
 from mpmkit.watch.so_far import MOST_ROWS, NOTHING, SoFar
 
@@ -79,10 +83,19 @@ def test_a_history_that_cannot_be_read_counts_as_none(tmp_path, content):
 # --- The server
 
 
+@pytest.fixture(scope="module")
+def slump(tmp_path_factory):
+    """The directory of a run."""
+    directory = tmp_path_factory.mktemp("watched") / "run"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mpmkit.report.write_report", lambda _: [])
+        mpmkit.run(parse_case(CASE | {"name": "tiny", "output": {}}), directory)
+    return directory
+
+
 @pytest.fixture
-def server(tmp_path):
-    write_history(tmp_path, 3)
-    serving = Server(tmp_path, resumed=True)
+def server(slump):
+    serving = Server(slump, resumed=True)
     threading.Thread(target=serving.serve_forever, daemon=True).start()
     yield serving
     serving.shutdown()
@@ -90,7 +103,7 @@ def server(tmp_path):
 
 
 def get(address, **headers):
-    with urllib.request.urlopen(urllib.request.Request(address, headers=headers), timeout=10) as answer:
+    with urllib.request.urlopen(urllib.request.Request(address, headers=headers), timeout=60) as answer:
         return answer.read().decode()
 
 
@@ -101,15 +114,18 @@ def refused(address, **settings):
 
 
 def test_the_server_answers_with_page_history_and_state(server):
-    assert "<title>scene</title>" in get(server.address)
-    assert json.loads(get(server.address + "history.json"))["time"] == [0.0, 0.001, 0.002]
+    page = get(server.address)
+    assert "<title>tiny</title>" in page
+    assert "connect-src 'self'" in page  # it may ask for newer data
+    history = json.loads(get(server.address + "history.json"))
+    assert history["time"][-1] == pytest.approx(0.02)
     state = json.loads(get(server.address + "state.json"))
     assert state["version"] == server.so_far.version()
     assert state["ended"] is False
 
 
 def test_nothing_else_is_served_and_nothing_can_be_written(server):
-    for path in ("case.json", "../secret", "run.log", "static/live.js"):
+    for path in ("case.json", "../secret", "run.log", "static/follow.js"):
         assert refused(server.address + path) == 404
     assert refused(server.address, data=b"x", method="POST") == 501
 
@@ -124,14 +140,42 @@ def test_it_listens_on_the_loopback_alone(server):
     assert server.socket.getsockname()[0] == "127.0.0.1"
 
 
-def test_a_name_with_marks_of_html_stays_text(tmp_path):
-    write_history(tmp_path, 1, name="</script><b>x")
-    serving = Server(tmp_path, resumed=True)
-    from mpmkit.watch.pages import page
+def test_a_run_that_is_being_prepared_has_a_page_that_says_so(tmp_path):
+    version, text = Pages(SoFar(tmp_path / "<b>", resumed=False)).latest()
+    assert version == NOTHING
+    assert "The run is being prepared." in text
+    assert "<h1>&lt;b&gt;</h1>" in text
+    assert "state.json" in text  # it follows the run
 
-    text = page(serving.so_far)
-    serving.server_close()
-    assert "</script><b>" not in text
+
+def test_a_page_is_made_once_for_what_has_been_written_and_not_too_often(slump, tmp_path, monkeypatch):
+    shutil.copytree(slump, tmp_path / "run")
+    pages = Pages(SoFar(tmp_path / "run", resumed=True))
+    first = pages.latest()
+    assert pages.latest() is first
+    os.utime(RunDirectory(tmp_path / "run").history, (1, 1))
+    assert pages.latest() is first  # the run has written more, but the last page is hardly made
+    assert pages.version() == first[0]
+    later = time.monotonic() + 1000
+    monkeypatch.setattr("mpmkit.watch.pages.clock.monotonic", lambda: later)
+    assert pages.version() != first[0]
+    assert pages.latest()[0] != first[0]
+
+
+def test_a_page_that_cannot_be_made_says_why(tmp_path):
+    write_history(tmp_path, 1)  # its case has no grid
+    version, text = Pages(SoFar(tmp_path, resumed=True)).latest()
+    assert version == NOTHING
+    assert "Its page cannot be made yet: " in text
+
+
+def test_the_last_page_does_not_wait(slump, tmp_path):
+    shutil.copytree(slump, tmp_path / "run")
+    pages = Pages(SoFar(tmp_path / "run", resumed=True))
+    first = pages.latest()
+    os.utime(RunDirectory(tmp_path / "run").history, (1, 1))
+    pages.ended = True
+    assert pages.latest()[0] == pages.version() != first[0]
 
 
 def test_a_browser_that_watches_is_told_that_the_run_has_ended(server):
@@ -200,12 +244,12 @@ def follow(address, rows=1):
     raise AssertionError("the history did not come")
 
 
-@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("stop", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.slow)])
 def test_the_page_is_there_while_the_run_is_and_goes_with_it(tiny, stop):
     process, address = start("--until", "1e4")
     try:
         follow(address)
-        assert "<title>tiny</title>" in get(address)
+        assert "<title>" in get(address)
         os.kill(process.pid, stop)
         _, said = process.communicate(timeout=30)
     finally:

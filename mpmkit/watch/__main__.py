@@ -17,10 +17,11 @@ from .server import Server
 def main() -> None:
     """Serve until whoever started this closes the pipe, which the system does as well where it dies."""
     with suppress(OSError, AttributeError):
-        os.nice(10)  # the run goes first
+        os.nice(5)  # the run goes first; a lower priority would get no answer through on a busy machine
     server = Server(Path(sys.argv[1]), resumed="--resumed" in sys.argv[2:])
     print(server.address, flush=True)
     threading.Thread(target=server.serve_forever, daemon=True).start()
+    threading.Thread(target=server.pages.prepare, daemon=True).start()
     sys.stdin.read()
     server.end()
     os._exit(0)  # a request that is being answered must not keep it

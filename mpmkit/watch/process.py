@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import threading
@@ -29,14 +30,15 @@ class Watch:
         self._process: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> Watch:
-        # A session of its own: Ctrl-C is for the run, which then ends this process in its own time.
+        # A group of its own: Ctrl-C is for the run, which then ends this process in its own time. Not a
+        # session of its own: Linux would give it the share of a run, whatever its priority.
         self._process = subprocess.Popen(
             self._command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
-            start_new_session=True,
+            **({"process_group": 0} if os.name == "posix" else {}),
         )
         threading.Thread(target=self._pass_on, args=(self._process,), daemon=True).start()
         return self

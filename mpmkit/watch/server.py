@@ -9,7 +9,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from .pages import page
+from .pages import Pages
 from .so_far import SoFar
 
 HOST = "127.0.0.1"
@@ -32,6 +32,7 @@ class Server(ThreadingHTTPServer):
     def __init__(self, directory: Path, resumed: bool) -> None:
         super().__init__((HOST, 0), _Handler)
         self.so_far = SoFar(directory, resumed)
+        self.pages = Pages(self.so_far)
         self.ended = False
         self.asked = -FOLLOWED
         """when a browser last asked how the run is, by the monotonic clock"""
@@ -45,7 +46,7 @@ class Server(ThreadingHTTPServer):
 
     def end(self) -> None:
         """Tell a browser that is watching that the run has ended."""
-        self.ended = True
+        self.ended = self.pages.ended = True
         if clock.monotonic() - self.asked < FOLLOWED:
             self.told.wait(FAREWELL)
 
@@ -53,9 +54,11 @@ class Server(ThreadingHTTPServer):
         """What a page asks for every other second."""
         self.asked = clock.monotonic()
         return {
-            "version": self.so_far.version(),
+            "version": self.pages.version(),
             "ended": self.ended,
             "directory": str(self.so_far.run.path),
+            "time": self.so_far.time(),
+            "until": self.so_far.history()["until"],
         }
 
 
@@ -67,8 +70,9 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(403, "This server answers to its own address alone")
             return
         path = self.path.partition("?")[0]
-        if path == "/":
-            self._send("text/html", page(self.server.so_far))
+        if path in ("/", "/page.html"):
+            version, text = self.server.pages.latest()
+            self._send("text/html", text, version)
         elif path == "/history.json":
             self._send("application/json", json.dumps(self.server.so_far.history()))
         elif path == "/state.json":
@@ -86,12 +90,14 @@ class _Handler(BaseHTTPRequestHandler):
         port = self.server.server_address[1]
         return self.headers.get("Host") in (f"{HOST}:{port}", f"localhost:{port}")
 
-    def _send(self, kind: str, text: str) -> None:
+    def _send(self, kind: str, text: str, version: str | None = None) -> None:
         content = text.encode("utf-8")
         self.send_response(200)
         self.send_header("Content-Type", f"{kind}; charset=utf-8")
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Cache-Control", "no-store")
+        if version is not None:
+            self.send_header("X-Version", version)
         self.end_headers()
         self.wfile.write(content)
 

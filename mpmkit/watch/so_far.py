@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ..output import RunDirectory
-from ..output.netcdf import read_dataset
 
 MOST_ROWS = 1000
 """Of a history that is sent: a screen has no more columns."""
@@ -43,9 +42,16 @@ class SoFar:
         self._read = (NOTHING, self._empty())
 
     def version(self) -> str:
-        """Another text whenever the run has written another history."""
+        """Another text whenever the run has written something that its page shows."""
         written = self._written()
-        return NOTHING if written == self._of_another else written
+        if written in (NOTHING, self._of_another):
+            return NOTHING
+        return f"{written} {_stamp(self.run.flow)} {_stamp(self.run.summary)}"
+
+    def time(self) -> float | None:
+        """Simulated time of the last row, s; None before there is one."""
+        time = self.history()["time"]
+        return time[-1] if time else None
 
     def history(self) -> dict[str, Any]:
         """``version``, ``name``, ``until`` (s), ``time`` (s) and ``series`` by name."""
@@ -56,11 +62,7 @@ class SoFar:
             return self._read[1]
 
     def _written(self) -> str:
-        try:
-            found = self.run.history.stat()
-        except OSError:
-            return NOTHING
-        return f"{found.st_mtime_ns}-{found.st_ino}"
+        return _stamp(self.run.history) or NOTHING
 
     def _empty(self) -> dict[str, Any]:
         return {
@@ -74,23 +76,45 @@ class SoFar:
     def _load(self, version: str) -> dict[str, Any]:
         """Read the history; where it is being replaced at this very moment, the next look finds it."""
         try:
-            dataset = read_dataset(self.run.history)
+            time, series = _scalars(self.run.history)
             case = json.loads(self.run.case.read_text(encoding="utf-8"))
         except (OSError, ValueError, RuntimeError):
             return self._empty()
-        rows = np.unique(np.linspace(0, dataset.sizes["time"] - 1, MOST_ROWS).round().astype(int))
-        series = {
-            str(name): Series(str(one.attrs["long_name"]), str(one.attrs["units"]), _listed(one.values[rows]))
-            for name, one in dataset.data_vars.items()
-            if one.dims == ("time",)
-        }
         return {
             "version": version,
             "name": str(case.get("name", self.run.path.name)),
             "until": case.get("until"),
-            "time": _listed(dataset["time"].values[rows]),
+            "time": time,
             "series": {name: vars(one) for name, one in series.items()},
         }
+
+
+def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
+    """Times, s, and the scalars of a history by name; fields of particles, which may be large, are not read.
+
+    Raises:
+        OSError, RuntimeError: there is none at the path, or a part of one.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        count = file.dimensions["time"].size
+        rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(int)) if count else []
+        found = {
+            name: Series(one.long_name, one.units, _listed(np.ma.filled(one[:], np.nan)[rows]))
+            for name, one in file.variables.items()
+            if one.dimensions == ("time",)
+        }
+    return found.pop("time").values, found
+
+
+def _stamp(path: Path) -> str:
+    """Another text whenever a file is another one; empty where there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ""
+    return f"{found.st_mtime_ns}-{found.st_ino}"
 
 
 def _listed(values: np.ndarray) -> list[float | None]:
