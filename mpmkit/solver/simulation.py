@@ -1,4 +1,4 @@
-"""A scene in motion: its state, its clock, and the guards that stop it when it diverges."""
+"""A scene with its state and time, and the guards that stop it when it diverges."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Simulation:
         Args:
             case: a validated case.
             particles: a state to go on from; default: the case's bodies in their places.
-            fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
+            fraction: part of the critical step, also beyond the stable part of the schemes, to test them.
 
         Raises:
             MpmkitError: this process was forked from one that had used the threads.
@@ -91,7 +91,7 @@ class Simulation:
         return {"particles": self.particles, "operations": self.operations, "guards": self.guards}
 
     def state(self) -> State:
-        """All that the run depends on from here on, beside the case: it goes on from it to the same bits."""
+        """All that the run depends on, except the case: a run continues from it with the same bits."""
         limits_ = np.array(list(self.limits.as_dict().values()))
         return plain_state(self) | {"limits/": limits_} | state_of(self.components)
 
@@ -124,7 +124,7 @@ class Simulation:
         self.guards.check_step()
 
     def remarks(self) -> list[str]:
-        """What the laws have to say of themselves, and what will change on the way."""
+        """Sentences of the laws, and on what will change during the run."""
         with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
@@ -140,7 +140,7 @@ class Simulation:
         return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
-        """What the user should know of the materials, and of the step that was chosen."""
+        """Sentences on problems of the materials and of the chosen step."""
         with self.blaming:
             of_materials = [
                 sentence
@@ -150,9 +150,9 @@ class Simulation:
             return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def prepare(self) -> None:
-        """Every few steps, look at the guards, refine, and choose the step; ``advance`` begins with it.
+        """Every few steps, check the guards, refine, and choose the step; ``advance`` begins with it.
 
-        Whoever wants to know the length of the next step beforehand calls it first: it looks once a step.
+        Call it first if you need the length of the next step; a second call in a step does nothing.
 
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.

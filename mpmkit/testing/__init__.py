@@ -1,10 +1,10 @@
-"""The conformance kit: whether a plug-in keeps its contract, in a test file of three lines.
+"""The conformance kit: it checks whether a plug-in keeps its contract, in a test file of three lines.
 
 >>> from mpmkit.testing import law_tests
 >>> from mpmkit_casson import Casson
 >>> test_casson = law_tests(Casson(yield_stress=20, casson_viscosity=0.8), flow_curve=…)
 
-Under pytest each property is then a test of its own; without it, ``for check in law_checks(law): check()``.
+With pytest each property is a test of its own; without pytest, ``for check in law_checks(law): check()``.
 """
 
 from .checks import (

@@ -1,4 +1,4 @@
-"""The checks of each kind of plug-in, gathered, by name."""
+"""The checks of each kind of plug-in, by name."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
 
     with netCDF4.Dataset(path) as file:
         count = file.dimensions["time"].size
-        rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(int)) if count else []
+        rows = np.unique(np.linspace(0, max(count - 1, 0), MOST_ROWS).round().astype(int))[:count]
         found = {
             name: Series(one.long_name, one.units, _listed(np.ma.filled(one[:], np.nan)[rows]))
             for name, one in file.variables.items()
