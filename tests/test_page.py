@@ -27,7 +27,9 @@ COARSE = ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}',
 
 
 def a_slump(directory: Path, *changes: str) -> Path:
-    run(load_case(CASES / "slump_fast.json", [*COARSE, *changes]), directory, threads=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mpmkit.report.draw_pictures", lambda directory: [])  # they take longer than all else
+        run(load_case(CASES / "slump_fast.json", [*COARSE, *changes]), directory, threads=1)
     return directory
 
 
@@ -183,6 +185,15 @@ def test_the_flow_does_not_depend_on_a_stop(tmp_path, monkeypatch):
 
 def test_a_run_without_a_report_keeps_no_flow(tmp_path):
     directory = a_slump(tmp_path / "run", "output.report=false", "until=0.02")
+    assert not (directory / "flow.npz").exists()
+    assert not (directory / "report").exists()
+
+
+def test_a_run_in_the_place_of_another_leaves_nothing_of_its_page(tmp_path):
+    directory = a_slump(tmp_path / "run", "until=0.02")
+    assert (directory / "flow.npz").exists()
+    case = load_case(CASES / "slump_fast.json", [*COARSE, "until=0.02", "output.report=false"])
+    run(case, directory, overwrite=True, threads=1)
     assert not (directory / "flow.npz").exists()
     assert not (directory / "report").exists()
 

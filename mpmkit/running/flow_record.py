@@ -118,8 +118,9 @@ class FlowRecord:
                 before.number, after.number, assume_unique=True, return_indices=True
             )
             a, b = a[of_a], b[of_b]
-        moved = b - a
-        rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = b - a
+            rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
         # What diverges has no displacement: its moments stay, since a guard is about to stop the run.
         return STANDSTILL * passed + (float(rms) / self._height if np.isfinite(rms) else 1.0)
 

@@ -139,6 +139,7 @@ class Chart {
 
   listen() {
     this.plot.addEventListener('keydown', (event) => {
+      this.reading.setAttribute('aria-live', 'polite'); // whoever reads by keys may be listening
       const step = { ArrowLeft: -1, ArrowRight: 1, PageUp: -20, PageDown: 20 }[event.key];
       if (event.key === 'Home') this.moveTo(0);
       else if (event.key === 'End') this.moveTo(this.data.x.length - 1);
