@@ -16,7 +16,7 @@ from .printing import echo
 )
 @click.argument("directory", type=PATH)
 def command(directory: str) -> None:
-    """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""
+    """Draw the pictures of the run in DIRECTORY again, and its page, from what it holds, into its report/."""
     from ..errors import CaseError, MpmkitError, reason
     from ..report import write_report
 
@@ -25,6 +25,6 @@ def command(directory: str) -> None:
     except MpmkitError:
         raise
     except Exception as error:  # a file of the run that someone has changed or cut off
-        raise CaseError(f"the pictures of '{directory}' cannot be drawn: {reason(error)}") from None
+        raise CaseError(f"the report of '{directory}' cannot be made: {reason(error)}") from None
     for path in written:
         echo(str(path))

@@ -58,6 +58,7 @@ def command(
     from ..case.overrides import apply_overrides
     from ..stability import combinations, critical_fraction
     from ..stability.figure import draw, picture_in
+    from ..stability.page import write_page
     from .display import say
 
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
@@ -77,8 +78,9 @@ def command(
     else:
         echo(_table(list(chosen), rows))
     path = draw(rows, list(chosen), str(data["name"]), directory)
+    page = write_page(rows, list(chosen), str(data["name"]), directory)
     if not as_json:
-        echo(f"map in {path}")
+        echo(f"map in {path} and {page}")
 
 
 def _stable(row: dict) -> str:

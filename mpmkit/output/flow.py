@@ -48,7 +48,7 @@ class Moment:
 
 
 TYPES = {
-    "number": np.int64,
+    "number": np.uint32,
     "body": np.uint8,
     "yielded": np.uint8,
     "position": np.float32,

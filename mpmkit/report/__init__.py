@@ -8,13 +8,11 @@ from ..output import RunDirectory
 from ..output.atomic import cannot_write, replacing
 from ..output.run_directory import PICTURES
 
-__all__ = ["write_report"]
+__all__ = ["draw_pictures", "write_report"]
 
 
 def write_report(run_directory: Path) -> list[Path]:
-    """Draw the pictures of a run into its ``report/``, and write its page.
-
-    What the run did not record is left out.
+    """Draw the pictures of a run into its ``report/``, and write its page there.
 
     Returns:
         The files written: PNG files, and last the page.
@@ -23,8 +21,22 @@ def write_report(run_directory: Path) -> list[Path]:
         CaseError: where the directory does not hold a run.
         OutputError: where a file cannot be written.
     """
-    from . import energies, outline, spread_and_height, wall_forces  # matplotlib is loaded only to draw
     from .page import write_page
+
+    return [*draw_pictures(run_directory), write_page(run_directory)]
+
+
+def draw_pictures(run_directory: Path) -> list[Path]:
+    """Draw the pictures of a run into its ``report/``; what the run did not record is left out.
+
+    Returns:
+        The PNG files written.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+        OutputError: where a picture cannot be written.
+    """
+    from . import energies, outline, spread_and_height, wall_forces  # matplotlib is loaded only to draw
     from .run_results import read_results
     from .style import DPI, figure_style
 
@@ -45,4 +57,4 @@ def write_report(run_directory: Path) -> list[Path]:
             with replacing(path) as partial:
                 figure.savefig(partial, format="png", dpi=DPI)
         written.append(path)
-    return [*written, write_page(run_directory)]
+    return written

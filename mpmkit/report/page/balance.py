@@ -15,7 +15,7 @@ from .source import Source
 from .words import number, percent
 
 NEGLIGIBLE = 1e-4
-"""Part of the largest figure of a wall below which a chart would show nothing but noise."""
+"""Part of the largest figure below which a chart or a curve would show nothing but noise."""
 
 
 def section(source: Source) -> Section | None:
@@ -70,7 +70,7 @@ def _walls(source: Source) -> dict[str, dict[str, Any]]:
         curves = [
             {"label": _wall_name(names[wall], results.case), "values": listed(whole[:, wall])}
             for wall in chosen
-            if values[:, wall].any()
+            if np.abs(values[:, wall]).max() > NEGLIGIBLE * np.abs(values).max()
         ]
         if drawn := of_curves(source, f"Walls: {title}", unit.rstrip(")"), curves):
             found[f"wall-{count}"] = drawn
@@ -118,9 +118,11 @@ def _energy(source: Source) -> list[tuple[str, str]]:
     moved = 0.0 if put_in is None else float(put_in[-1])
     start, end = (sum(float(values[row]) for values in present.values()) for row in (0, -1))
     lost = start + worked + moved - end
-    found.append(
-        ("Energy lost in the flow", f"{number(lost)} J, by viscosity, friction and the damping of the method")
-    )
+    if lost >= 0:
+        said = f"{number(lost)} J, by viscosity, friction and the damping of the method"
+        found.append(("Energy lost in the flow", said))
+    else:
+        found.append(("Energy from nowhere", f"{number(-lost)} J: the method has made it"))
     if moved:
         said = f"{number(moved)} J, by shifting particles so that they stay evenly spread"
         found.append(("Energy put in by the method", said))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...case.model import Material
 from ...contracts import Plugin
-from ...errors import GuardStop, PluginFault
+from ...errors import GuardStop
 from ...registry.blame import blaming_plugins
 from ...rheology.flow_curve import flow_curve
 from .histories import listed
@@ -111,7 +111,7 @@ def _chart(law: Plugin, reached: tuple[float, float, float] | None) -> dict[str,
     try:
         with blaming_plugins([("law", law)]):
             stress = flow_curve(law, rates)
-    except (GuardStop, PluginFault):  # it is no reason to have no page
+    except GuardStop:  # it is no reason to have no page
         return None
     if stress is None or not np.isfinite(stress).all() or not (stress > 0).any():
         return None

@@ -52,7 +52,7 @@ def _state(source: Source) -> str:
     since, rate = summary.get("at_rest_since"), summary.get("final_spread_rate")
     if since is not None:
         return f"The material has been at rest since t = {seconds(since)}."
-    if rate is not None and rate > LEAST_RATE:
+    if _spreads(source) and rate is not None and rate > LEAST_RATE:
         return f"The material was still spreading, at {number(1e3 * rate)} mm/s: it has no final shape yet."
     return "The material was still moving."
 

@@ -49,7 +49,7 @@ def section(source: Source) -> Section:
 
 def _warnings(source: Source) -> list[str]:
     said = [line.text for line in source.last_start if line.level in ("WARNING", "ERROR")]
-    return [f"{text[0].upper()}{text[1:]}." for text in dict.fromkeys(said) if text]
+    return [_sentence(text) for text in dict.fromkeys(said) if text]
 
 
 def _observations(source: Source) -> list[str]:
@@ -81,7 +81,14 @@ def _remarks(source: Source) -> list[str]:
         return []
     after = said[begun[0] + 1 :]
     ends = [row for row, text in enumerate(after) if re.match(r"\S+ after \d+ steps, t = ", text)]
-    return [f"{text[0].upper()}{text[1:]}." for text in after[: ends[0] if ends else None]]
+    return [_sentence(text) for text in after[: ends[0] if ends else None]]
+
+
+def _sentence(text: str) -> str:
+    """A line of the log as a sentence; a name at its begin, such as bodies.0, stays as it is."""
+    word = text.split(maxsplit=1)[0]
+    begin = text if any(mark in word for mark in "._'") else f"{text[0].upper()}{text[1:]}"
+    return begin if begin.endswith(".") else f"{begin}."
 
 
 def _facts(source: Source) -> list[tuple[str, str]]:

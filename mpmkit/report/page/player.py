@@ -8,7 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ...contracts.law import initial_state
+from ...errors import GuardStop
 from ...output.flow import Moment
+from ...registry.blame import blaming_plugins
 from ..domain import domain_of, symmetry_plane
 from .colour_maps import stops
 from .packing import Packed, Scale, packed
@@ -45,7 +48,7 @@ def section(source: Source, room: int) -> Section | None:
     walls = walls_of(source)
     for_walls = sum(len(text) for wall in walls for shape in wall["shapes"] for text in shape.values())
     for_walls += sum(12 * len(place) for wall in walls for place in wall["places"])
-    scales = _scales(source.moments)
+    scales = _scales(source)
     longest = _longest(source)
 
     def pack(moments: Sequence[Moment]) -> Packed:
@@ -75,21 +78,34 @@ def _longest(source: Source) -> float:
     return min(drawn, source.results.case["grid"]["cell_size"] / 2)
 
 
-def _scales(moments: Sequence[Moment]) -> dict[str, Scale]:
+def _scales(source: Source) -> dict[str, Scale]:
+    moments = source.moments
+
     def highest(name: str) -> float:
         return max(float(np.percentile(getattr(moment, name), TRIMMED)) for moment in moments)
 
     scales = {"speed": Scale(0.0, highest("speed") or 1.0)}
     if (most := highest("shear_rate")) > 0:
         scales["shear_rate"] = Scale(DECADES * most, most, logarithmic=True)
-    flags = np.concatenate([moment.yielded for moment in moments])
-    if flags.any() and not flags.all():
+    if _can_yield(source):
         scales["yielded"] = Scale(0.0, 1.0)
     pressure = np.concatenate([moment.pressure for moment in moments])
     low, high = np.percentile(pressure, [100 - TRIMMED, TRIMMED])
     if high > low:
         scales["pressure"] = Scale(float(low), float(high))
     return scales
+
+
+def _can_yield(source: Source) -> bool:
+    """Whether a law of the case has a yield point; of a case that cannot be read, whether anything rests."""
+    if source.case is None:
+        return not all(moment.yielded.all() for moment in source.moments)
+    laws = [body.material.constitutive_law for body in source.case.bodies]
+    try:
+        with blaming_plugins([("law", law) for law in laws]):
+            return any(law.yield_point(initial_state(law, 1)) is not None for law in laws)
+    except GuardStop:  # a plug-in at fault is no reason to have no page
+        return False
 
 
 def _quantity(name: str, scale: Scale) -> dict[str, Any]:
@@ -113,11 +129,7 @@ def _scene(source: Source) -> dict[str, Any]:
     lower, upper = np.array([grid["domain"][axis] for axis in axes], dtype=float).T
     faces = grid.get("faces", {})
     closed = [
-        [
-            faces.get(f"{axis}_{side}", "open") not in ("open", "periodic", "symmetry")
-            for side in ("min", "max")
-        ]
-        for axis in axes
+        [faces.get(f"{axis}_{side}", "open") not in NO_WALLS for side in ("min", "max")] for axis in axes
     ]
     mirrors = [0.0 if axis == "r" else symmetry_plane(results, axis) for axis in axes[:-1]]
     periods = [
@@ -146,7 +158,8 @@ def _controls(source: Source, quantities: list[str]) -> str:
         for row, name in enumerate(quantities)
     )
     how = "Drag to turn, scroll or pinch to come nearer; arrow keys turn, + and − come nearer."
-    stage = "The material in three dimensions" if source.space.dim == 3 else "Section through the material"
+    solid = source.space.dim == 3
+    stage = "The material in three dimensions" if solid else "Section through the material"
     return (
         f'<div class="player" data-player>'
         f'<fieldset class="choices"><legend>Colour by</legend>{choices}</fieldset>'

@@ -14,11 +14,11 @@ from ...case import load_case
 from ...case.model import Case
 from ...errors import CaseError, MpmkitError
 from ...output import RunDirectory, read_frame, read_frames, read_wall_frames
-from ...output.flow import Moment, moment_of, read_flow
+from ...output.flow import TYPES, Moment, moment_of, read_flow
 from ...output.netcdf import read_dataset
 from ...output.summary import trusted_rows
 from ...spaces import SPACES, Space
-from ..domain import columns, inside
+from ..domain import inside
 from ..run_results import RunResults
 
 LINE = re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d+ (?P<level>[A-Z]+) +(?P<said>.*)$")
@@ -90,7 +90,10 @@ def _moments_of_frames(results: RunResults) -> list[Moment]:
         frame = read_frame(path)
         number = frame.get("particle", np.arange(len(frame["position"])))
         fields = frame | {"position": frame["position"][:, :dim], "number": number}
-        found.append(moment_of(time, 1.0, fields))
+        if "half_size" in fields:
+            fields["half_size"] = fields["half_size"][:, :dim]
+        if TYPES.keys() <= fields.keys():
+            found.append(moment_of(time, 1.0, fields))
     return found
 
 
@@ -98,7 +101,6 @@ def _drawable(moment: Moment, results: RunResults) -> Moment:
     """What is finite and in the domain: a guard has stopped the run of the rest."""
     position = np.zeros((len(moment), 3))
     position[:, : moment.position.shape[1]] = moment.position
-    assert all(column < 3 for column in columns(results).values())
     kept = inside(results, position) & np.isfinite(moment.half_size).all(axis=1)
     for values in (moment.speed, moment.shear_rate, moment.pressure):
         kept &= np.isfinite(values)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...case.plugins import plugins_of
-from ...errors import MpmkitError, PluginFault
+from ...errors import MpmkitError
 from ...geometry import Motion
 from ...output import read_wall_frame
 from ...registry import audit
@@ -50,7 +50,7 @@ def _moving(source: Source, name: str, files: dict[float, Path]) -> tuple[list, 
         with blaming_plugins(plugins_of(case)):
             surface = audit.placed(wall.surface, case.space_)
             there = [surface.present(moment.time) for moment in source.moments]
-    except (MpmkitError, PluginFault):
+    except MpmkitError:
         return None
     eye, origin = np.eye(dim), np.zeros((1, dim))
     if motion is None:

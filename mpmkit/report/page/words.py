@@ -15,8 +15,10 @@ def number(value: float, digits: int = 3) -> str:
         return "0"
     size = math.floor(math.log10(abs(value)))
     if -4 <= size < 7:
-        return f"{value:,.{max(0, digits - 1 - size)}f}".replace(",", "\u202f")
-    return f"{value:.{digits - 1}e}"
+        text = f"{value:,.{max(0, digits - 1 - size)}f}".replace(",", "\u202f")
+    else:
+        text = f"{value:.{digits - 1}e}"
+    return text.replace("-", "−")
 
 
 def count(value: float) -> str:

@@ -210,6 +210,8 @@ function decimals(step) {
 function roomy(_, low, high) {
   if (low === null || high === null) return [0, 1];
   if (low === high) return low === 0 ? [0, 1] : low > 0 ? [0, 1.2 * high] : [1.2 * low, 0];
+  const least = 0.02 * Math.max(Math.abs(low), Math.abs(high)); // a ripple is not to look like a wave
+  if (high - low < least) return [(low + high - least) / 2, (low + high + least) / 2];
   const room = 0.06 * (high - low);
   const near = low >= 0 && low < 0.6 * high;
   return [near ? 0 : low - room, high <= 0 && high > 0.6 * low ? 0 : high + room];

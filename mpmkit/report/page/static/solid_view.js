@@ -1,7 +1,7 @@
 /* A scene in three dimensions, which turns under the mouse or a finger. */
 
 const ANGLE = 0.6; // of view, rad
-const FIRST = { turn: -0.9, rise: 0.35, near: 1 };
+const FIRST = { turn: -0.9, rise: 0.35, near: 1.2 };
 const KEYS = {
   ArrowLeft: ['turn', 0.1],
   ArrowRight: ['turn', -0.1],
