@@ -98,7 +98,7 @@ def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
     """
     scalars = read_scalars(path)
     count = len(scalars["time"][0])
-    rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(int)) if count else []
+    rows = np.unique(np.linspace(0, max(0, count - 1), min(count, MOST_ROWS)).round().astype(int))
     found = {
         name: Series(long_name, units, _listed(values[rows]))
         for name, (values, long_name, units) in scalars.items()
