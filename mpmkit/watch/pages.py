@@ -13,9 +13,9 @@ from .so_far import NOTHING, SoFar
 
 END = "</body>"
 PREPARING = "The run is being prepared. The first run of a kind compiles its kernels, about half a minute."
-PAUSE = 100
-"""Least pause between two pages, as a multiple of the processor time that one took: they take no more than a
-hundredth of a core from the run."""
+PAUSE = 150
+"""Least pause between two pages, as a multiple of the processor time that one took: with what it costs to
+ask for news, they take no more than a hundredth of a core from the run."""
 
 
 class Pages:
