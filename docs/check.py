@@ -28,6 +28,7 @@ MARK = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"docs/images/[\w/*.]+\.png")
 FILE = re.compile(r"`((?:mpmkit|plugins|tests|docs|cases|benchmarks)/[\w/.-]+\.\w+)`")
+TEST = re.compile(r"`(test_\w+\.py)`")
 ROUNDED = 0.6
 """Of the last digit given: by how much a number may be off that is said rounded."""
 README_NUMBERS = re.compile(
@@ -76,6 +77,9 @@ def files_that_are_not_there() -> Iterator[str]:
         for name in FILE.findall(page.read_text(encoding="utf-8")):
             if not (ROOT / name).exists():
                 yield f"{_named(page)}: there is no file '{name}'"
+        for name in TEST.findall(page.read_text(encoding="utf-8")):
+            if not list(ROOT.glob(f"tests/**/{name}")):
+                yield f"{_named(page)}: there is no test file '{name}'"
 
 
 def anchors(page: Path) -> set[str]:
