@@ -10,17 +10,31 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .case import Case, load_case, parse_case
+    from .results import Run, open_run, progress_bar
     from .running.runner import run
     from .solver.simulation import Simulation
     from .version import __version__
 
-__all__ = ["Case", "Simulation", "__version__", "load_case", "parse_case", "run"]
+__all__ = [
+    "Case",
+    "Run",
+    "Simulation",
+    "__version__",
+    "load_case",
+    "open_run",
+    "parse_case",
+    "progress_bar",
+    "run",
+]
 
 _HOME = {
     "Case": "mpmkit.case",
     "load_case": "mpmkit.case",
     "parse_case": "mpmkit.case",
     "run": "mpmkit.running.runner",
+    "Run": "mpmkit.results",
+    "open_run": "mpmkit.results",
+    "progress_bar": "mpmkit.results",
     "Simulation": "mpmkit.solver.simulation",
     "__version__": "mpmkit.version",
 }

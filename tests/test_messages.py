@@ -121,6 +121,8 @@ NEARLY_JSON = {
     "typographic quotes": ("{“until”: 1}", "line 1, column 2", "JSON has double quotes"),
     "YAML": ("space: 3d\nuntil: 4\n", "line 1, column 1", "YAML begins, and JSON is needed"),
     "YAML with a comment": ("# a\n\nspace: 3d\n", "line 1, column 1", "YAML begins, and JSON is needed"),
+    "YAML with a directive": ("%YAML 1.2\n---\nspace: 3d\n", "line 1, column 1", "YAML begins, and JSON"),
+    "a list in YAML": ("- space: 3d\n", "line 1, column 1", "convert the file, or write braces around all"),
     "TOML": ("[grid]\ncell_size = 0.1\n", "line 1, column 1", "TOML begins, and JSON is needed"),
     "no quotes": ("{until: 1}", "line 1, column 2", 'must stand in double quotes: "until"'),
     "Python's True": ('{"a": True}', "line 1, column 7", "True must be written as true"),
@@ -181,13 +183,12 @@ def test_what_is_said_to_install_is_what_the_extras_hold():
     """By the names of the packages, so that it works outside a registry that has mpmkit."""
     root = Path(__file__).parents[1]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    texts = {
-        file: file.read_text(encoding="utf-8") for file in (*root.glob("docs/**/*.md"), root / "README.md")
-    }
+    pages = (*root.glob("docs/**/*.md"), root / "README.md")
+    texts = {file: file.read_text(encoding="utf-8") for file in pages}
     texts |= {file: file.read_text(encoding="utf-8") for file in root.glob("mpmkit/**/*.py")}
     assert not [str(file) for file, text in texts.items() if re.search(r"pip install\s+'?mpmkit\[", text)]
     for extra, requirements in extras.items():
-        if extra in ("mesh", "cluster"):
+        if extra in ("mesh", "cluster", "movie"):
             said = [text for text in texts.values() if f"pip install '.[{extra}]'" in text]
             assert said, extra
             names = " ".join(re.split(r"[><=]", requirement)[0] for requirement in requirements)

@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from mpmkit.errors import CaseError
 from mpmkit.output import FrameWriter, History, RunDirectory, Variable, read_frames, summarise, write_json
-from mpmkit.report import write_report
+from mpmkit.report import draw_pictures
 from mpmkit.report.domain import domain_of
 from mpmkit.report.outline import chosen_frames
 from mpmkit.report.run_results import read_results
@@ -123,7 +123,7 @@ def assert_pictures(paths, names) -> None:
 @pytest.mark.parametrize("space", ["axisymmetric", "3d", "plane-strain"])
 def test_a_slump_is_drawn(tmp_path, space):
     run = fabricate(tmp_path / "run", space, spacing=0.02)
-    assert_pictures(write_report(run), PICTURES)
+    assert_pictures(draw_pictures(run), PICTURES)
     assert sorted(path.name for path in (run / "report").iterdir()) == sorted(PICTURES)
 
 
@@ -131,21 +131,21 @@ def test_the_report_can_be_made_again_and_matplotlib_keeps_its_settings(axisymme
     import matplotlib
 
     before = dict(matplotlib.rcParams)
-    first = [path.read_bytes() for path in write_report(axisymmetric)]
+    first = [path.read_bytes() for path in draw_pictures(axisymmetric)]
     assert dict(matplotlib.rcParams) == before
-    assert [path.read_bytes() for path in write_report(axisymmetric)] == first
+    assert [path.read_bytes() for path in draw_pictures(axisymmetric)] == first
 
 
 def test_a_scene_that_hardly_moves_is_drawn(tmp_path):
     run = fabricate(tmp_path / "run", "plane-strain", spread=1.02, until=0.3, spacing=0.02)
     assert read_results(run).summary["t500"] is None
-    assert_pictures(write_report(run), PICTURES)
+    assert_pictures(draw_pictures(run), PICTURES)
 
 
 def test_without_frames_there_is_no_outline(axisymmetric, tmp_path):
     for name in ("case.json", "history.nc", "summary.json"):
         (tmp_path / name).write_bytes((axisymmetric / name).read_bytes())
-    assert_pictures(write_report(tmp_path), PICTURES[1:])
+    assert_pictures(draw_pictures(tmp_path), PICTURES[1:])
 
 
 def test_snapshots_are_the_nearest_frames_and_the_end(axisymmetric):
@@ -172,4 +172,4 @@ def test_a_section_in_3d_holds_the_particles_within_a_cell_of_its_plane(tmp_path
 
 def test_a_directory_without_results_is_bad_input(tmp_path):
     with pytest.raises(CaseError, match="does not hold the results of a run"):
-        write_report(tmp_path)
+        draw_pictures(tmp_path)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mpmkit.output import FrameWriter, History, RunDirectory, Variable, write_json
-from mpmkit.report import write_report
+from mpmkit.report import draw_pictures
 from mpmkit.report.domain import domain_of
 from mpmkit.report.filling import triangles_between
 from mpmkit.report.images import beyond_faces
@@ -100,7 +100,7 @@ def test_a_body_that_leaves_the_section_leaves_its_panel_empty(tmp_path):
     first, last = panels_of(results)
     assert not first.texts
     assert last.texts[0].get_text() == "nothing in this section"
-    assert write_report(tmp_path)
+    assert draw_pictures(tmp_path)
 
 
 def test_only_what_is_finite_and_in_the_domain_is_drawn(tmp_path):
@@ -122,7 +122,7 @@ def test_a_run_without_a_finite_particle_has_no_outline(tmp_path, value):
     write_run(tmp_path, "plane-strain", {0.0: np.full((4, 2), value)}, ended="non-finite")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert write_report(tmp_path) == []
+        assert draw_pictures(tmp_path) == []
 
 
 def test_material_that_is_drawn_out_shows_no_stripes(tmp_path):

@@ -38,11 +38,13 @@ MADE_OF_THE_CASE = {
     "Refiner": {"dim", "acts", "_author", "_grid", "_radial", "_full"},
     "EnergyBalance": {"_downwards", "_along"},
     "Recorder": {"directory"},
+    "Ending": {"_until"},
     "History": {"attributes", "_columns", "_axes", "_variables", "_walls"},
     "FrameWriter": {"directory", "_planar"},
     "WallFrames": {"_surfaces", "_spacing", "_lower", "_upper"},
     "WallFrameWriter": {"directory", "_dim", "_names"},
     "Schedule": {"_times"},
+    "FlowRecord": {"_height", "_until"},
 }
 """Attributes by class that are never written again; every other one is poisoned."""
 NOT_COMPARED = {

@@ -7,7 +7,8 @@ import pytest
 from studies import CASE, study
 
 from mpmkit.registry import installed
-from mpmkit.rheology.refit import RATES, flow_curve, with_law
+from mpmkit.rheology.flow_curve import flow_curve
+from mpmkit.rheology.refit import RATES, with_law
 from mpmkit.study import members_of
 
 BINGHAM = {"law": "bingham", "yield_stress": 50.0, "plastic_viscosity": 20.0, "density": 2000.0}
@@ -20,7 +21,8 @@ def made(material, law):
 
 def curve(material):
     law = installed().of_kind("law")[material["law"]]
-    return flow_curve(law.model_validate({key: material[key] for key in law.model_fields if key in material}))
+    given = {key: material[key] for key in law.model_fields if key in material}
+    return flow_curve(law.model_validate(given), RATES)
 
 
 @pytest.mark.parametrize("law", ["herschel-bulkley", "herschel-bulkley-evp"])

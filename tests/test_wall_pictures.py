@@ -13,13 +13,13 @@ from mpmkit.output import (
     WallFrameWriter,
     write_json,
 )
-from mpmkit.report import outline, wall_forces, write_report
+from mpmkit.output.columns import wall_columns
+from mpmkit.report import draw_pictures, outline, wall_forces
 from mpmkit.report.domain import domain_of
 from mpmkit.report.run_results import read_results
 from mpmkit.report.section import plane_of
 from mpmkit.report.style import FACE_COLOURS, WALL_COLOURS
 from mpmkit.report.wall_lines import wall_lines
-from mpmkit.running.recorder import wall_columns
 from mpmkit.spaces import SPACES
 
 CELL = 0.1
@@ -133,7 +133,7 @@ def test_without_walls_there_is_no_legend_and_no_picture_of_forces(tmp_path):
     results = write_run(tmp_path)
     assert legend(outline.draw(results)) == []
     assert wall_forces.draw(results) is None
-    assert [path.name for path in write_report(tmp_path)] == ["outline.png", "spread_and_height.png"]
+    assert [path.name for path in draw_pictures(tmp_path)] == ["outline.png", "spread_and_height.png"]
 
 
 def charts(figure):
@@ -193,5 +193,5 @@ def test_walls_that_nothing_touches(tmp_path):
 
 def test_the_pictures_are_written(tmp_path):
     write_run(tmp_path, walls=TURNS, force=[[3.0, -2.0]], torque=[[5.0]], power=[7.0])
-    names = [path.name for path in write_report(tmp_path)]
+    names = [path.name for path in draw_pictures(tmp_path)]
     assert names == ["outline.png", "spread_and_height.png", "wall_forces.png"]

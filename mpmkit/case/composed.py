@@ -24,7 +24,9 @@ from pydantic_core import PydanticKnownError
 from ..contracts import ConstitutiveLaw, Plugin
 from ..registry import Registry, installed
 from .consistency import check
+from .html import case_html
 from .model import Body, Case, Material, Scheme, Wall
+from .output import OutputSettings
 
 
 class CheckedCase(Case):
@@ -38,6 +40,10 @@ class CheckedCase(Case):
         if info.context is not _CHECKED_BEFORE:
             check(self)
         return self
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return case_html(self)
 
     def __reduce__(self) -> tuple:
         """So that a case can go to another process: its class is made anew there, of the plug-ins."""
@@ -91,6 +97,11 @@ def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
     return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
 
 
+def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
+    """Annotation of a field that holds plug-ins by names of the user's."""
+    return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
+
+
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
     own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
     base = type("Material", (Material,), {"law_class": law, "__module__": Material.__module__})
@@ -138,6 +149,13 @@ def case_model(registry: Registry) -> type[Case]:
         surface=_named(registry, "surface"),
         contact=_named(registry, "contact"),
     )
+    output = create_model(
+        "OutputSettings",
+        __base__=OutputSettings,
+        __doc__=OutputSettings.__doc__,
+        diagnostics=_by_name(registry, "diagnostic", OutputSettings.model_fields["diagnostics"]),
+        fields=_by_name(registry, "particle_field", OutputSettings.model_fields["fields"]),
+    )
     model = create_model(
         "Case",
         __base__=CheckedCase,
@@ -145,6 +163,7 @@ def case_model(registry: Registry) -> type[Case]:
         bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
         scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),
+        output=(output, Field(default={}, validate_default=True, description="what the run writes")),
     )
     model.registry = registry
     return model

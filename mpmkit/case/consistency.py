@@ -11,18 +11,20 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import PluginFault
+from ..output.columns import COLUMNS
 from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
+from .diagnostics import diagnostic_columns
+from .ending import Until
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
-from .state_variables import state_variables
+from .state_variables import TAKEN, former_names, state_variables
 from .synonyms import nearest
-from .walls import check_walls
+from .walls import NAME, check_walls
+from .whole_cells import WHOLE, cells_along, extend_domain
 
-WHOLE = 1e-6
-"""How far, in cells, a length may be from a whole number of cells and still count as whole."""
 MOST_CELLS = 2**30
 """Cells along an axis: the first node of a particle is a 32-bit integer."""
 MOST_SPEED = 1e12
@@ -53,17 +55,54 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    _check_measured(case)
+    _check_until(case)
     check_walls(case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
-        _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+        _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
 
 
+def _check_measured(case: Case) -> None:
+    """Diagnostics fit the scene, and fields have names of their own."""
+    for what in ("diagnostics", "fields"):
+        for name in getattr(case.output, what):
+            if not NAME.fullmatch(name):
+                raise ValueError(
+                    f"output.{what} has the name {shown(name)}; it must be of letters, digits, '_' and '-'"
+                )
+    walls = [*case.walls, *case.space_.faces]
+    for name, diagnostic in case.output.diagnostics.items():
+        with blaming_plugins([("diagnostic", diagnostic)]):
+            problem = diagnostic.problem(case.space_, walls)
+        if problem is not None:
+            raise ValueError(f"output.diagnostics.{name}: {problem}")
+    for name in case.output.fields:
+        if name in TAKEN or name in former_names(case):
+            raise ValueError(
+                f"output.fields has the name '{name}', which another particle field has; choose another name"
+            )
+
+
+def _check_until(case: Case) -> None:
+    scalars = [column.name for column in COLUMNS if not column.component]
+    scalars += [column.name for column in diagnostic_columns(case)]
+    for name in case.until.variables if isinstance(case.until, Until) else ():
+        if name not in scalars:
+            near = nearest(name, ["at_most", "rest", *scalars])
+            hint = (
+                f"did you mean '{near}'?" if near else f"it may have at_most, rest, and {', '.join(scalars)}"
+            )
+            raise ValueError(
+                f"until has the key '{name}', which is no scalar variable of the history; {hint}"
+            )
+
+
 def _check_particle_history(case: Case) -> None:
-    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case), *case.output.fields]
     for number, name in enumerate(case.output.particle_history):
-        if name not in allowed:
+        if name not in allowed and name not in former_names(case):
             raise ValueError(
                 f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
                 f"{_meant(name, allowed)}"
@@ -106,20 +145,15 @@ def _check_domain(case: Case) -> None:
             raise ValueError(
                 f"grid.domain.{axis} is [{lower:g}, {upper:g}]; the lower end must be below the upper one"
             )
-        cells = (upper - lower) / cell
-        if cells > MOST_CELLS:
+        if (cells := cells_along(case, axis)) > MOST_CELLS:
             raise ValueError(
                 f"grid.domain.{axis} has {cells:.3g} cells of {cell:g} m; at most {MOST_CELLS:,} are possible"
-            )
-        if abs(cells - round(cells)) > WHOLE * max(1.0, cells) or round(cells) < 1:
-            raise ValueError(
-                f"grid.domain.{axis} is {cells:.6g} cells long; it must be a whole number of cells of "
-                f"{cell:g} m, such as [{lower:g}, {lower + max(1, round(cells)) * cell:g}]"
             )
     if case.space_.radial and domain["r"][0] != 0:
         raise ValueError(
             f"grid.domain.r begins at {domain['r'][0]:g}; it must begin at the axis of symmetry, r = 0"
         )
+    extend_domain(case)
 
 
 def _check_faces(case: Case) -> None:

@@ -93,8 +93,8 @@ def _falls_out(case: Case) -> Iterator[str]:
         speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
         pull = abs(float(g[axis]))
         time = (math.hypot(speed, math.sqrt(2 * pull * max(0.0, distance))) - speed) / pull
-        if time <= case.until:
-            when = "at once" if time < 1e-6 * case.until else f"after about {time:.2g} s"
+        if time <= case.end:
+            when = "at once" if time < 1e-6 * case.end else f"after about {time:.2g} s"
             yield (
                 f"bodies.{number} has no floor: gravity pulls it to the face {side}, which is open, and it "
                 f'leaves the grid there {when}; for a floor write "{side}": "stick", or "slip", in grid.faces'
@@ -181,7 +181,7 @@ def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
         return bool(case.gravity_vector.any()) or a.velocity is not None or b.velocity is not None
-    relative = (_velocity(case, b) - _velocity(case, a)) * case.until
+    relative = (_velocity(case, b) - _velocity(case, a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
     if not case.gravity_vector.any():

@@ -11,7 +11,10 @@ import re
 LITERALS = {"True": "true", "False": "false", "None": "null", "NULL": "null", "Null": "null"}
 LITERALS |= {"TRUE": "true", "FALSE": "false", "yes": "true", "no": "false", "on": "true", "off": "false"}
 WORD = re.compile(r"[^\W\d][\w.+-]*")
-NEEDED = "and JSON is needed: braces around all, and every name and text in double quotes"
+NEEDED = (
+    "and JSON is needed: convert the file, or write braces around all, every name and text in double quotes, "
+    "and a comma between two entries"
+)
 LONGEST = 40
 """Characters of the text that are shown."""
 
@@ -28,7 +31,7 @@ def _found(text: str, at: int, said: str) -> tuple[int, str]:
     """Place and sentence."""
     begin = len(text) - len(text.lstrip())
     if text[begin] not in "{\"'/":
-        if re.match(r"(---|#.*\n|\s)*[\w$-]+\s*:", text) and "{" not in text[: at + 1]:
+        if re.match(r"(---|%YAML.*\n|#.*\n|\s)*(- |[\w$-]+\s*:)", text) and "{" not in text[: at + 1]:
             return begin, f"YAML begins, {NEEDED}"
         if re.match(r"(#.*\n|\s)*(\[[\w.]+\]|[\w.-]+\s*=)", text):
             return begin, f"TOML begins, {NEEDED}"

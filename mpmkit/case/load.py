@@ -19,6 +19,7 @@ from .composed import case_model
 from .json_mistakes import mistake
 from .messages import explain
 from .model import Case
+from .near_files import near_file
 from .overrides import apply_overrides
 from .strict_json import NESTED, decode, require_finite
 
@@ -112,7 +113,9 @@ def read_json(path: str | Path, what: str = "case") -> Any:
         raise CaseError(f"{path}: the {what} file is not a UTF-8 text file") from None
     except (OSError, ValueError) as error:  # ValueError: a path that no file can have
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError(f"{shown(str(path))}: the {what} file cannot be read: {reason}") from None
+        raise CaseError(
+            f"{shown(str(path))}: the {what} file cannot be read: {reason}{_instead(path, error)}"
+        ) from None
     if len(text) > LARGEST:
         raise CaseError(f"{path}: the {what} file has more than {LARGEST:,} characters; that is too large")
     if not text.strip():
@@ -123,6 +126,15 @@ def read_json(path: str | Path, what: str = "case") -> Any:
         raise CaseError(f"{path}: the {what} file is not valid JSON: {mistake(text, error)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
+
+
+def _instead(path: str | Path, error: Exception) -> str:
+    """What to read in place of a file that is not there, or of a directory."""
+    if isinstance(error, IsADirectoryError):
+        inside = Path(path) / "case.json"
+        return f"; the case of the run in it is '{inside}'" if inside.is_file() else ""
+    near = near_file(path) if isinstance(error, FileNotFoundError) else None
+    return "" if near is None else f"; did you mean '{near}'?"
 
 
 def name_from(path: str | Path) -> str:

@@ -28,6 +28,9 @@ TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
 MOST_EXAMINED = 100
 """Unknown keys of which each is compared with those that are missing."""
 
+MEASURED = {"diagnostics": "diagnostic", "fields": "particle_field"}
+"""Kinds of the plug-ins of ``output``, by their keys."""
+
 Path = tuple[str | int, ...]
 
 
@@ -162,6 +165,8 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     below = path[2:] if path[0] == "walls" else path  # a wall may have the name of a kind
     anywhere = path[0] in ("scheme", "walls")
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
+    if path[0] == "output":
+        kinds = [MEASURED[key] for key in path[1:2] if key in MEASURED]
     if not kinds or not registry.problems:
         return [], ""
     kind, reasons = str(kinds[0]), []

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
 from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Surface, quantity
 from ..contracts.order import UpdateOrder
@@ -23,6 +23,7 @@ from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
+from .ending import AnyUntil, latest
 from .faces import Face
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
@@ -40,6 +41,17 @@ class Grid(Model):
     faces: dict[str, Face] = Field(
         default={}, description="condition on each face, such as z_min; default: every face is open"
     )
+
+    _extensions: list[str] = PrivateAttr(default_factory=list)
+
+    @property
+    def extensions(self) -> tuple[str, ...]:
+        """Sentences on the axes along which the domain was extended to whole cells; see ``whole_cells``."""
+        return tuple(self._extensions)
+
+    def note_extension(self, sentence: str) -> None:
+        """Keep a sentence, for the log of the run."""
+        self._extensions.append(sentence)
 
 
 class Material(Model):
@@ -185,7 +197,7 @@ class Case(Model):
     space: Literal["3d", "plane-strain", "axisymmetric"] = Field(
         description="axes of the scene: x, y, z in 3d; x, z in plane-strain; r, z in axisymmetric"
     )
-    until: float = quantity("s", "simulated time", gt=0)
+    until: AnyUntil = quantity("s", "simulated time, or conditions that end the run before a time at_most")
     gravity: list[float] | None = quantity(
         "m/s^2", "acceleration along each axis; default: 9.81 down the last axis", default=None
     )
@@ -203,6 +215,11 @@ class Case(Model):
     def space_(self) -> Space:
         """The space as an object that knows its axes."""
         return SPACES[self.space]
+
+    @property
+    def end(self) -> float:
+        """Time, s, at which the run ends at the latest."""
+        return latest(self.until)
 
     @cached_property
     def domain_bounds(self) -> tuple[np.ndarray, np.ndarray]:

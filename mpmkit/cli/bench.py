@@ -5,13 +5,14 @@ from __future__ import annotations
 import click
 
 from . import options
+from .command import with_examples
 from .printing import echo, echo_json
 
 SECONDS = 5.0
 """For how long a scene is timed by default."""
 
 
-@click.command("bench")
+@with_examples("bench", "mpmkit bench small-axisymmetric --seconds 1")
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
 @options.threads
 @click.option(

@@ -6,11 +6,16 @@ from pathlib import Path
 
 import click
 
+from .command import with_examples
 from .paths import PATH, refuse_existing
 from .printing import echo
 
 
-@click.command("chart")
+@with_examples(
+    "chart",
+    "mpmkit compare cases/slump_fast.json --vary grid.cell_size=0.02,0.03 --until 0.2 --out runs/cells",
+    "mpmkit chart runs/cells",
+)
 @click.argument("study", type=PATH)
 @click.option(
     "--variable", default="spread_diameter", show_default=True, help="History or figure to judge by."

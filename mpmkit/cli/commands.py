@@ -16,6 +16,9 @@ from . import (
     bench,
     chart,
     compare,
+    completion,
+    doctor,
+    movie,
     new_plugin,
     options,
     plan,
@@ -90,6 +93,7 @@ for module in (
     run,
     rerun,
     report,
+    movie,
     plan,
     compare,
     study,
@@ -99,6 +103,8 @@ for module in (
     plugins,
     new_plugin,
     schema,
+    doctor,
+    completion,
 ):
     commands.add_command(module.command)
 for command in commands.commands.values():

@@ -5,10 +5,11 @@ from __future__ import annotations
 import click
 
 from . import options
+from .command import with_examples
 from .study import run_study
 
 
-@click.command("compare")
+@with_examples("compare", "mpmkit compare cases/slump_fast.json --vary scheme.order=usl,usf --until 0.2")
 @options.case_file
 @click.option(
     "--vary",

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import logging
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from numba.core import event
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+from rich.console import Console, RenderableType
+from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn
 from rich.table import Column
+from rich.text import Text
 
 from ..output.log import RECORD
 from ..output.summary import lifted_later, state_at_end
@@ -22,6 +23,7 @@ from .printing import echo
 
 if TYPE_CHECKING:
     from ..running import runner
+    from .terminal_plot import HistoryPlot
 
 LOGGER = logging.getLogger("mpmkit")
 LINE_INTERVAL = 30.0
@@ -68,14 +70,21 @@ class Display(logging.Handler):
 
     Errors of the log are left to the last sentence of ``main``, and nothing is shown before the run has
     something to say: a case that is refused is reported in one sentence and no more.
+
+    Args:
+        name: of the run.
+        plotted: directory of the run, whose history is plotted below the bar; None for no plot.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, plotted: Path | None = None) -> None:
         super().__init__()
+        self._plot = None if plotted is None else _plot_of(plotted)
+        self._until = 1.0  # s
         self._room = console.width - min(len(name), LONGEST_NAME) - PERCENTAGE - 3  # for the bar and its line
         width = min(max(self._room - len(_lines(0.1234, 100.0, 1e7, 35999)[0]), NARROWEST_BAR), WIDEST_BAR)
         self._room -= width
-        self._bar = Progress(
+        self._bar = _BarAndPlot(
+            self._plot,
             TextColumn(
                 "[bold]{task.description}",
                 table_column=Column(no_wrap=True, overflow="ellipsis", max_width=LONGEST_NAME),
@@ -100,7 +109,12 @@ class Display(logging.Handler):
 
     def __exit__(self, *error: object) -> None:
         event.unregister("numba:compile", self._compiling)
+        if self._plot is not None:
+            self._plot.look(self._until)
         self._bar.stop()
+        if self._plot is not None and not console.is_terminal:
+            for line in self._plot.lines:
+                say(line)
         LOGGER.removeHandler(self)
         LOGGER.setLevel(self._level_before)
 
@@ -123,13 +137,39 @@ class Display(logging.Handler):
 
     def __call__(self, progress: runner.Progress) -> None:
         lines = _lines(
-            progress.time, progress.until, progress.particle_steps_per_second, progress.seconds_left
+            progress.time,
+            progress.until,
+            progress.particle_steps_per_second,
+            progress.seconds_left,
+            progress.ends_earlier,
         )
+        self._until = progress.until
+        if self._plot is not None:
+            self._plot.look(self._until)
         fitting = next((line for line in lines if len(line) <= self._room), "")
         self._bar.update(self._task, completed=progress.time / progress.until, line=fitting)
         if not console.is_terminal and clock.monotonic() - self._said > LINE_INTERVAL:
             self._said = clock.monotonic()
             say(lines[0])
+
+
+def _plot_of(directory: Path) -> HistoryPlot:
+    from .terminal_plot import HistoryPlot
+
+    return HistoryPlot(directory)
+
+
+class _BarAndPlot(Progress):
+    """The bar, and the plot of the history below it."""
+
+    def __init__(self, plot: HistoryPlot | None, *columns: ProgressColumn, **settings: Any) -> None:
+        self._plot = plot
+        super().__init__(*columns, **settings)
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        yield from super().get_renderables()
+        if self._plot is not None and self._plot.lines:
+            yield Text("\n".join(self._plot.lines), no_wrap=True, overflow="crop")
 
 
 class _Compiling(event.Listener):
@@ -146,10 +186,13 @@ class _Compiling(event.Listener):
         pass
 
 
-def _lines(time: float, until: float, speed: float, seconds_left: float) -> tuple[str, ...]:
+def _lines(
+    time: float, until: float, speed: float, seconds_left: float, ends_earlier: bool = False
+) -> tuple[str, ...]:
     """What stands beside the bar, the longest first: a narrow terminal has room for the last alone."""
-    left = f"{duration(seconds_left)} left"
-    now = f"t = {time:.4g} of {until:g} s"
+    at_most = "at most " if ends_earlier else ""
+    left = f"{at_most}{duration(seconds_left)} left"
+    now = f"t = {time:.4g} of {at_most}{until:g} s"
     return f"{now} · {speed / 1e6:.2f} M particle-steps/s · {left}", f"{now} · {left}", left
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
@@ -20,10 +21,12 @@ KINDS = [
     "equation_of_state",
     "surface",
     "contact",
+    "diagnostic",
+    "particle_field",
 ]
 
 
-@click.command("new-plugin")
+@with_examples("new-plugin", "mpmkit new-plugin honey --kind law")
 @click.argument("name")
 @click.option(
     "--kind",

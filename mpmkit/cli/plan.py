@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import shlex
 
-import click
-
 from . import options
+from .command import with_examples
 from .duration import duration
 from .printing import echo, echo_json
 
@@ -14,7 +13,11 @@ MOST_COUNTED = 10**15
 """From here on nobody reads the digits."""
 
 
-@click.command("plan")
+@with_examples(
+    "plan",
+    "mpmkit plan cases/slump_fast.json",
+    "mpmkit plan cases/slump.json --set grid.cell_size=0.01 --json",
+)
 @options.case_file
 @options.set_values
 @options.until

@@ -8,12 +8,13 @@ from typing import Any
 import click
 
 from . import options
+from .command import with_examples
 from .printing import echo, echo_json
 
 COLUMNS = ("kind", "name", "distribution", "citation")
 
 
-@click.command("plugins")
+@with_examples("plugins", "mpmkit plugins", "mpmkit plugins --json")
 @options.as_json
 def command(as_json: bool) -> None:
     """List the registered plug-ins, and those that could not be loaded or were left out."""

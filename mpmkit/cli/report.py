@@ -6,14 +6,17 @@ from pathlib import Path
 
 import click
 
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
 
-@click.command("report")
+@with_examples(
+    "report", "mpmkit run cases/slump_fast.json --until 0.2 --out runs/short", "mpmkit report runs/short"
+)
 @click.argument("directory", type=PATH)
 def command(directory: str) -> None:
-    """Draw the pictures of the run in DIRECTORY again, from what it holds, into its report/."""
+    """Draw the pictures of the run in DIRECTORY again, and its page, from what it holds, into its report/."""
     from ..errors import CaseError, MpmkitError, reason
     from ..report import write_report
 
@@ -22,6 +25,6 @@ def command(directory: str) -> None:
     except MpmkitError:
         raise
     except Exception as error:  # a file of the run that someone has changed or cut off
-        raise CaseError(f"the pictures of '{directory}' cannot be drawn: {reason(error)}") from None
+        raise CaseError(f"the report of '{directory}' cannot be made: {reason(error)}") from None
     for path in written:
         echo(str(path))

@@ -7,11 +7,14 @@ from pathlib import Path
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
 
-@click.command("rerun")
+@with_examples(
+    "rerun", "mpmkit run cases/slump_fast.json --until 0.2 --out runs/short", "mpmkit rerun runs/short"
+)
 @click.argument("directory", type=PATH)
 @click.option("--out", type=PATH, metavar="DIR", help="Where to; default: DIRECTORY-rerun.")
 @options.threads

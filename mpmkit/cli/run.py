@@ -8,11 +8,18 @@ from typing import Any
 import click
 
 from . import options
+from .command import with_examples
 from .duration import SECONDS
 from .paths import PATH
 
 
-@click.command("run")
+@with_examples(
+    "run",
+    "mpmkit run cases/slump_fast.json",
+    "mpmkit run cases/slump_fast.json --until 0.5 --set bodies.0.material.yield_stress=400 --out runs/stiff",
+    "mpmkit run --resume runs/stiff --until 0.6",
+    "mpmkit run cases/slump_fast.json --until 0.5 --watch --plot --out runs/watched",
+)
 @click.argument("case", type=PATH, required=False)
 @options.out
 @options.set_values
@@ -20,6 +27,13 @@ from .paths import PATH
 @options.threads
 @options.overwrite
 @options.quiet
+@click.option(
+    "--watch",
+    is_flag=True,
+    help="Serve the page of the run while it is at work, on this machine alone, and print its address.",
+)
+@click.option("--open", "opened", is_flag=True, help="Open that page in a browser; includes --watch.")
+@click.option("--plot", is_flag=True, help="Plot the spread, or what moves, in the terminal meanwhile.")
 @click.option(
     "--checkpoint-every",
     type=SECONDS,
@@ -43,6 +57,9 @@ def command(
     threads: int | None,
     overwrite: bool,
     quiet: bool,
+    watch: bool,
+    opened: bool,
+    plot: bool,
     checkpoint_every: float | None,
     stopped: str | None,
 ) -> None:
@@ -54,11 +71,15 @@ def command(
     if stopped is not None and case is None and overrides:
         raise click.UsageError("--resume goes on with the case as it was: leave out --set")
 
+    if quiet and (watch or opened or plot):
+        raise click.UsageError("--watch, --open and --plot show something: leave out --quiet")
+
     from ..case import load_case
     from ..running.interrupts import take_signals_as_interrupts
 
     take_signals_as_interrupts()
     settings: dict[str, Any] = {"threads": threads, "checkpoint_every": checkpoint_every}
+    settings |= {"watch": watch or opened, "opened": opened, "plot": plot}
     if stopped is not None:
         loaded = None if case is None else load_case(case, overrides)
         perform(Path(stopped), quiet, resumed=True, case=loaded, until=until, **settings)
@@ -69,7 +90,17 @@ def command(
         perform(directory, quiet, resumed=False, case=loaded, overwrite=overwrite, **settings)
 
 
-def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **settings: Any) -> None:
+def perform(
+    directory: Path,
+    quiet: bool,
+    *,
+    resumed: bool,
+    case: Any,
+    watch: bool = False,
+    opened: bool = False,
+    plot: bool = False,
+    **settings: Any,
+) -> None:
     """Run or go on in a directory, and show what a person wants to see of it.
 
     Args:
@@ -77,9 +108,12 @@ def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **setting
         quiet: whether to show nothing but errors.
         resumed: whether the run goes on.
         case: the case; None for that of the directory.
+        watch: whether to serve its page meanwhile.
+        opened: whether to open that page in a browser.
+        plot: whether to plot its history in the terminal.
         settings: for ``run``, or for ``resume``.
     """
-    from contextlib import suppress
+    from contextlib import nullcontext, suppress
 
     import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
 
@@ -100,9 +134,27 @@ def perform(directory: Path, quiet: bool, *, resumed: bool, case: Any, **setting
 
         from .display import Display, say, show_summary
 
-        with Display(directory.name if case is None else case.name) as display:
+        name = directory.name if case is None else case.name
+        plotted = directory if plot else None
+        with (
+            Display(name, plotted) as display,
+            _served(directory, resumed, opened) if watch else nullcontext(),
+        ):
             try:
                 go(display)
             except Undrawn as undrawn:  # the run itself has come to its end
                 say(f"warning: {undrawn}", style="yellow")
     show_summary(directory)
+
+
+def _served(directory: Path, resumed: bool, opened: bool) -> Any:
+    """Serve the page of a run; its address is said once it is known."""
+    from ..watch import Watch
+    from .display import say
+
+    def tell(address: str) -> None:
+        say(f"watch this run at {address}")
+        if opened:
+            click.launch(address)
+
+    return Watch(directory, resumed, tell)

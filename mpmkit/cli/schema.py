@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import click
-
+from .command import with_examples
 from .printing import echo_json
 
 
-@click.command("schema")
+@with_examples("schema", "mpmkit schema > case.schema.json")
 def command() -> None:
     """Print the JSON Schema of case files, with units and the parameters of every registered plug-in."""
     from ..case import case_schema

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH, refuse_existing
 from .printing import echo, echo_json
 
@@ -20,7 +21,7 @@ def _names(kind: str):
     )
 
 
-@click.command("stability")
+@with_examples("stability", "mpmkit stability cases/vibrating_bar.json --order usl,usf --until 10")
 @options.case_file
 @_names("shape")
 @_names("order")
@@ -57,12 +58,15 @@ def command(
     from ..case.overrides import apply_overrides
     from ..stability import combinations, critical_fraction
     from ..stability.figure import draw, picture_in
+    from ..stability.page import write_page
     from .display import say
 
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
     directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
     refuse_existing(picture_in(directory), overwrite)  # before hours are spent on it
+    if isinstance(data.get("until"), dict):
+        say("until has conditions: every combination is tried to until.at_most")
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
     rows = []
     for labels, combination in list(combinations(data, chosen)):
@@ -76,8 +80,9 @@ def command(
     else:
         echo(_table(list(chosen), rows))
     path = draw(rows, list(chosen), str(data["name"]), directory)
+    page = write_page(rows, list(chosen), str(data["name"]), directory)
     if not as_json:
-        echo(f"map in {path}")
+        echo(f"map in {path} and {page}")
 
 
 def _stable(row: dict) -> str:

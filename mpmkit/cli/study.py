@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from .progress import StudyProgress
 
 
-@click.command("study")
+@with_examples("study", "mpmkit study cases/studies/yield_stress_fast.json")
 @click.argument("study", type=PATH)
 @options.study_out
 @options.study_overwrite

@@ -5,12 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import CaseError, reason
 from ..spaces import Space
 from .atomic import cannot_write, replacing
 from .pvd import Entry, read_pvd, write_pvd
+
+if TYPE_CHECKING:
+    import meshio
 
 LIST_NAME = "frames.pvd"
 _NAME = re.compile(r"frame_\d{6,}\.vtu")
@@ -118,8 +123,24 @@ def read_frames(directory: Path) -> list[tuple[float, Path]]:
 
 
 def read_frame(path: Path) -> dict[str, np.ndarray]:
-    """The fields of a frame by name, ``(n,)`` or ``(n, k)``, and ``position``, ``(n, 3)``, m."""
-    import meshio
+    """The fields of a frame by name, ``(n,)`` or ``(n, k)``, and ``position``, ``(n, 3)``, m.
 
-    mesh = meshio.read(path, file_format="vtu")
+    Raises:
+        CaseError: it cannot be read.
+    """
+    mesh = read_vtu(path)
     return {"position": mesh.points, **mesh.point_data}
+
+
+def read_vtu(path: Path) -> meshio.Mesh:
+    """The mesh in a file of a run.
+
+    Raises:
+        CaseError: it cannot be read.
+    """
+    from meshio.vtu import read  # meshio.read ends the process where a file is cut off
+
+    try:
+        return read(str(path))
+    except Exception as error:
+        raise CaseError(f"the frame '{path}' cannot be read: {reason(error)}") from None

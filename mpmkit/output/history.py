@@ -155,14 +155,15 @@ class History:
         """
         write_dataset(self.dataset(), path)
 
-    def flush_if_due(self, path: Path) -> None:
-        """Write if the last write is long enough ago; to be called after every row."""
+    def flush_if_due(self, path: Path) -> bool:
+        """Write if the last write is long enough ago, and say whether; to be called after every row."""
         start = clock.monotonic()
         if start < self._next_flush:
-            return
+            return False
         self.write(path)
         end = clock.monotonic()
         self._next_flush = max(start + FLUSH_INTERVAL, end + FLUSH_PAUSE * (end - start))
+        return True
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:

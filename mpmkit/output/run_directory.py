@@ -21,6 +21,10 @@ PARTIAL = ".*.partial"
 """What a killed process may have left."""
 PICTURES = ("outline", "spread_and_height", "energies", "wall_forces")
 """Names of the pictures of a report, without their ending."""
+MOVIE = "movie.gif"
+"""The movie that ``mpmkit movie`` writes beside the pictures."""
+PAGE = "index.html"
+"""The page of a report."""
 MESHES = "meshes"
 """Directory of the meshes that the case names; there is none if it names none."""
 
@@ -57,8 +61,22 @@ class RunDirectory:
         return self.path / "frames"
 
     @property
+    def flow(self) -> Path:
+        """What the page of the report plays."""
+        return self.path / "flow.npz"
+
+    @property
+    def page(self) -> Path:
+        """The page of the report."""
+        return self.report / PAGE
+
+    @property
     def report(self) -> Path:
         return self.path / "report"
+
+    @property
+    def movie(self) -> Path:
+        return self.report / MOVIE
 
     @property
     def checkpoints(self) -> Path:
@@ -128,12 +146,12 @@ class RunDirectory:
 
     @property
     def _results(self) -> tuple[Path, ...]:
-        return self.history, self.summary, self.frames, self.report, self.checkpoints, self.log
+        return self.history, self.summary, self.flow, self.frames, self.report, self.checkpoints, self.log
 
     def _clear(self) -> None:
         """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
-        written = [self.history, self.summary, *self.path.glob(PARTIAL)]
-        pictures = [self.report / f"{name}.png" for name in PICTURES]
+        written = [self.history, self.summary, self.flow, *self.path.glob(PARTIAL)]
+        pictures = [self.page, self.movie, *(self.report / f"{name}.png" for name in PICTURES)]
         frames = [*frame_files(self.frames), self.frames / LIST_NAME, self.frames / WALL_LIST]
         folders = [(self.frames, frames), (self.report, pictures)]
         if not self.frames.is_symlink():  # else it is the link that goes

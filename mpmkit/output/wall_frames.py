@@ -11,6 +11,7 @@ import numpy as np
 
 from ..spaces import Space
 from .atomic import cannot_write, replacing
+from .frames import read_vtu
 from .pvd import Entry, read_pvd, write_pvd
 
 LIST_NAME = "walls.pvd"
@@ -164,8 +165,10 @@ def read_wall_frames(directory: Path) -> dict[float, dict[str, Path]]:
 
 
 def read_wall_frame(path: Path) -> Drawn:
-    """A wall as it was written; its vectors have three components."""
-    import meshio
+    """A wall as it was written; its vectors have three components.
 
-    mesh = meshio.read(path, file_format="vtu")
+    Raises:
+        CaseError: it cannot be read.
+    """
+    mesh = read_vtu(path)
     return Drawn(mesh.points, mesh.cells[0].data, mesh.point_data["velocity"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..case.ending import ending
 from ..case.forewarnings import forewarnings
 from ..case.model import Case
 from ..case.plugins import cautions
@@ -38,7 +39,8 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
         ``particles``, ``particles_at_end``, ``nodes`` (along each axis, ghosts included), ``steps``,
         ``time_step`` (s, the first), ``limits`` (s, by name), ``limited_by``, ``sound_speed`` (m/s, a body
         each, at the start), ``memory_bytes`` (at the end), ``checkpoint_bytes`` (more, while a
-        checkpoint is written), ``expected_seconds``, ``remarks`` (of the laws),
+        checkpoint is written), ``expected_seconds``, ``remarks`` (of the domain and
+        the laws),
         ``warnings``, ``expected_error`` (of the spread, see ``advice``; None if not known), ``cheaper``
         (models, each with ``name``, ``why``, ``changes`` by path, ``options`` for the command line,
         ``particles``, ``steps``, ``expected_seconds`` and ``expected_error``).
@@ -83,13 +85,13 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings = [*cautions(case), *forewarnings(case), *simulation.warnings()]
     remarks = simulation.remarks()
-    if not math.isfinite(case.until / step):
-        raise CaseError(
-            f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
-        )
+    if (end := ending(case.until)) is not None:
+        remarks.append(f"{end}: steps, memory and time are those of a run to that time")
+    if not math.isfinite(case.end / step):
+        raise CaseError(f"until is {case.end:g} s; in steps of {step:.3g} s that is more than can be counted")
     start = trial(simulation)
-    growth = _growth(simulation, case.until / step * start.step)
-    steps = math.ceil(case.until / step * growth.steps)
+    growth = _growth(simulation, case.end / step * start.step)
+    steps = math.ceil(case.end / step * growth.steps)
     at_end = round(particles * growth.last_particles)
     return {
         "particles": particles,
@@ -102,8 +104,8 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
-        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.until / steps),
-        "remarks": remarks,
+        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.end / steps),
+        "remarks": [*case.grid.extensions, *remarks],
         "warnings": warnings + start.stopped,
     }
 

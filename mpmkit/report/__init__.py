@@ -1,4 +1,4 @@
-"""Pictures of a run, drawn from its directory alone, so that they can be drawn again at any time."""
+"""Page and pictures of a run, made from its directory alone, so that they can be made again at any time."""
 
 from __future__ import annotations
 
@@ -8,10 +8,25 @@ from ..output import RunDirectory
 from ..output.atomic import cannot_write, replacing
 from ..output.run_directory import PICTURES
 
-__all__ = ["write_report"]
+__all__ = ["draw_pictures", "write_report"]
 
 
 def write_report(run_directory: Path) -> list[Path]:
+    """Draw the pictures of a run into its ``report/``, and write its page there.
+
+    Returns:
+        The files written: PNG files, and last the page.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+        OutputError: where a file cannot be written.
+    """
+    from .page import write_page
+
+    return [*draw_pictures(run_directory), write_page(run_directory)]
+
+
+def draw_pictures(run_directory: Path) -> list[Path]:
     """Draw the pictures of a run into its ``report/``; what the run did not record is left out.
 
     Returns:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -58,12 +58,12 @@ def draw(results: RunResults) -> Figure | None:
         return None
     walls = list(results.case.get("walls") or ())
     look = looks(walls, walls)
-    lower, upper = _limits(shown, domain, AROUND_WALLS if walls else AROUND)
+    lower, upper = limits(shown, domain, AROUND_WALLS if walls else AROUND)
     panels = Panels(len(snapshots), upper - lower)
     colours, extend = _colours([snapshot.section for snapshot in snapshots], results.stopped_by_guard)
     digits = _digits([snapshot.time for snapshot in snapshots])
     for axes, snapshot in zip(panels.axes, snapshots, strict=True):
-        body = _add_section(axes, snapshot.section, colours, domain, results.case["grid"]["cell_size"])
+        body = add_section(axes, snapshot.section, colours, domain, results.case["grid"]["cell_size"])
         draw_walls(axes, snapshot.walls, look)
         if domain.floor is not None:
             axes.axhline(domain.floor * MILLIMETRES, color=BLACK, linewidth=1.5)
@@ -102,7 +102,7 @@ def _seen(walls: list[Lines], lower: np.ndarray, upper: np.ndarray) -> set[str]:
     }
 
 
-def _limits(sections: list[Section], domain: Domain, around: float) -> tuple[np.ndarray, np.ndarray]:
+def limits(sections: list[Section], domain: Domain, around: float) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of a panel, m: around the material, within the domain, down to a floor."""
     lower = np.maximum(np.min([section.lower for section in sections], axis=0), domain.lower)
     upper = np.minimum(np.max([section.upper for section in sections], axis=0), domain.upper)
@@ -119,15 +119,21 @@ def _colours(sections: list[Section], stopped_by_guard: bool) -> tuple[Normalize
 
     What a guard stopped has speeds at its end that would leave one colour for all that was before.
     """
-    fastest = [float(section.speed.max()) if len(section) else 0.0 for section in sections]
+    fastest = [float(section.value.max()) if len(section) else 0.0 for section in sections]
     trusted = fastest[:-1] if stopped_by_guard and len(fastest) > 1 else fastest
     top = max(trusted) or max(fastest) or 1.0
     return Normalize(0, top), "max" if max(fastest) > top else "neither"
 
 
-def _add_section(
-    axes: Axes, section: Section, colours: Normalize, domain: Domain, cell_size: float
+def add_section(
+    axes: Axes,
+    section: Section,
+    colours: Normalize,
+    domain: Domain,
+    cell_size: float,
+    colour_map: str | Colormap = COLOUR_MAP,
 ) -> PolyCollection:
+    """Draw a section up to the faces of the domain; triangles close the gaps between neighbours."""
     section = beyond_faces(section, domain, cell_size)
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rectangles = section.centre[:, None, :] + corners * section.half_size[:, None, :]
@@ -137,9 +143,9 @@ def _add_section(
     # A thin edge of its own colour closes the hairlines between neighbours.
     body = PolyCollection(
         [*(np.concatenate([triangles, rectangles]) * MILLIMETRES)],
-        array=np.concatenate([section.speed[between].mean(axis=1), section.speed]),
+        array=np.concatenate([section.value[between].mean(axis=1), section.value]),
         norm=colours,
-        cmap=COLOUR_MAP,
+        cmap=colour_map,
         linewidths=0.4,
         edgecolors="face",
         zorder=2,

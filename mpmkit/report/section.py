@@ -12,8 +12,8 @@ from ..spaces import SPACES
 from .domain import Domain, columns, inside, symmetry_plane
 from .run_results import RunResults
 
-NEEDED = ("position", "half_size", "speed", "body")
-"""Fields of a frame that a picture is drawn from."""
+NEEDED = ("position", "half_size", "body")
+"""Fields of a frame that a picture is drawn from, beside the one that it is coloured by."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Section:
     """``(n, 2)``, m."""
     half_size: np.ndarray
     """``(n, 2)``, m."""
-    speed: np.ndarray
-    """``(n,)``, m/s."""
+    value: np.ndarray
+    """``(n,)``, the field that it is coloured by, such as the speed, m/s."""
     body: np.ndarray
     """``(n,)``, number of the body."""
 
     def __len__(self) -> int:
-        return len(self.speed)
+        return len(self.value)
 
     @property
     def lower(self) -> np.ndarray:
@@ -44,7 +44,7 @@ class Section:
 
     def with_image(self, of: np.ndarray, factor: np.ndarray, shift: np.ndarray) -> Section:
         """This section and, before it, the image factor · x + shift of a part of it."""
-        image = Section(self.centre[of] * factor + shift, self.half_size[of], self.speed[of], self.body[of])
+        image = Section(self.centre[of] * factor + shift, self.half_size[of], self.value[of], self.body[of])
         joined = {
             f.name: np.concatenate([getattr(image, f.name), getattr(self, f.name)]) for f in fields(self)
         }
@@ -59,7 +59,7 @@ def plane_of(results: RunResults) -> float | None:
     """
     if results.case["space"] != "3d":
         return None
-    frame = _drawable(results.frames[0][1], results)
+    frame = drawable(results.frames[0][1], results)
     y = frame["position"][:, 1]
     plane = symmetry_plane(results, "y")
     if plane is None:
@@ -71,13 +71,17 @@ def plane_of(results: RunResults) -> float | None:
     return plane
 
 
-def section_of(path: Path, results: RunResults, plane: float | None, domain: Domain) -> Section:
+def section_of(
+    path: Path, results: RunResults, plane: float | None, domain: Domain, field: str = "speed"
+) -> Section:
     """The section through a frame along y = ``plane``, m, or all of it where that is None.
+
+    ``field`` is the field of the frame that it is coloured by.
 
     Half a body, cut at its axis or at a plane of symmetry, is drawn whole. Particles that are not finite, or
     have left the domain, are not drawn: a guard has stopped their run. Nothing may be left.
     """
-    frame = _drawable(path, results)
+    frame = drawable(path, results, field)
     if plane is not None:
         distance = np.abs(frame["position"][:, 1] - plane)
         # Drawn from the farthest to the nearest, so that what the plane cuts lies on top.
@@ -86,7 +90,7 @@ def section_of(path: Path, results: RunResults, plane: float | None, domain: Dom
         frame = {name: field[drawn] for name, field in frame.items()}
     plane_axes = [0, SPACES[results.case["space"]].dim - 1]  # the horizontal and the vertical
     centre, half_size = frame["position"][:, plane_axes], frame["half_size"][:, plane_axes]
-    section = Section(centre, half_size, frame["speed"], frame["body"])
+    section = Section(centre, half_size, frame[field], frame["body"])
     everything = np.ones(len(section), dtype=bool)
     if domain.mirror is not None:
         section = section.with_image(everything, np.array([-1, 1]), np.array([2 * domain.mirror, 0]))
@@ -98,7 +102,7 @@ def lengths_of(path: Path, results: RunResults) -> dict[str, float]:
 
     They are those of the history (``solver.measures``), which need not have a row at this time.
     """
-    frame = _drawable(path, results)
+    frame = drawable(path, results)
     if not len(frame["position"]):
         return {}
     (*horizontal, vertical), column = SPACES[results.case["space"]].axes, columns(results)
@@ -121,14 +125,15 @@ def _ends(frame: dict[str, np.ndarray], results: RunResults, axis: str, column: 
     return max(float((position - half_size).min()), low), min(float((position + half_size).max()), high)
 
 
-def _drawable(path: Path, results: RunResults) -> dict[str, np.ndarray]:
+def drawable(path: Path, results: RunResults, field: str = "speed") -> dict[str, np.ndarray]:
     """The fields of a frame that a picture needs, of the particles that can be drawn.
 
     A box that is longer than a cell does not say where material is: it is drawn one cell long, as it is
     measured.
     """
-    frame = {name: field for name, field in read_frame(path).items() if name in NEEDED}
-    kept = inside(results, frame["position"]) & np.isfinite(frame["speed"])
+    needed = (*NEEDED, field)
+    frame = {name: values for name, values in read_frame(path).items() if name in needed}
+    kept = inside(results, frame["position"]) & np.isfinite(frame[field])
     kept &= np.isfinite(frame["half_size"]).all(axis=1)
     frame = {name: field[kept] for name, field in frame.items()}
     frame["half_size"] = np.minimum(frame["half_size"], results.case["grid"]["cell_size"] / 2)

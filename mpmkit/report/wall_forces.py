@@ -37,7 +37,7 @@ def draw(results: RunResults) -> Figure | None:
     """
     if not results.case.get("walls") or "wall_force" not in results.history or len(results.time) < 3:
         return None
-    charts = _charts(results)
+    charts = charts_of(results)
     rows = max(1, len(charts))
     figure = Figure(figsize=(WIDTH, AROUND + HEIGHT * rows), layout="constrained")
     title = f"{results.title}: walls on the material"
@@ -48,7 +48,7 @@ def draw(results: RunResults) -> Figure | None:
         note = "no wall was touched"
         panels[0].text(0.5, 0.5, note, transform=panels[0].transAxes, ha="center", color=GREY)
         return figure
-    chosen, left_out = _chosen(charts)
+    chosen, left_out = chosen_of(charts)
     names = [str(name) for name in results.history["wall"].values]
     look = looks(names, list(results.case["walls"]))
     for axes, chart in zip(panels, charts, strict=True):
@@ -67,7 +67,7 @@ def draw(results: RunResults) -> Figure | None:
     return figure
 
 
-def _chosen(charts: list[Chart]) -> tuple[list[int], int]:
+def chosen_of(charts: list[Chart]) -> tuple[list[int], int]:
     """The walls that are drawn, in their order, and how many others act on the material as well."""
     shares = [np.abs(values).max(axis=0) / np.abs(values).max() for _, values in charts]
     largest = np.max(shares, axis=0)
@@ -76,7 +76,7 @@ def _chosen(charts: list[Chart]) -> tuple[list[int], int]:
     return sorted(map(int, chosen)), len(acting) - len(chosen)
 
 
-def _charts(results: RunResults) -> list[Chart]:
+def charts_of(results: RunResults) -> list[Chart]:
     """The charts, without those in which everything is rounding. The first row of a history has no means."""
     force, torque, power = (
         np.nan_to_num(results.history[f"wall_{name}"].values[1:], posinf=0.0, neginf=0.0)

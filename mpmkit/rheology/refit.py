@@ -8,8 +8,8 @@ import numpy as np
 
 from ..contracts import ElastoviscoplasticLaw, GeneralisedNewtonianLaw, Plugin
 from ..registry import Registry
-from ..registry.audit import require_array, require_number
 from ..registry.blame import blaming_plugins
+from .flow_curve import flow_curve
 
 RATES = np.geomspace(0.1, 10.0, 41)
 """Shear rates, 1/s, over which the curves are to agree: those of a slump, and of rheometers for concrete."""
@@ -52,7 +52,7 @@ def _refitted(
         before = old.model_validate({k: material[k] for k in old.model_fields if k in material})
     except ValueError:  # the case will be refused, in words of its own
         return kept, []
-    target = flow_curve(before)
+    target = flow_curve(before, RATES)
     if not missing or target is None or not issubclass(new, FLUIDS):
         return kept, []
     fitted = _fit(new, shared, missing, target)
@@ -63,26 +63,12 @@ def _refitted(
     ]
 
 
-def flow_curve(law: Any) -> np.ndarray | None:
-    """Stress, Pa, in simple shear at ``RATES``; None of a law that is no fluid of the short contracts."""
-    if isinstance(law, GeneralisedNewtonianLaw):
-        viscosity = law.apparent_viscosity(RATES.copy())
-        require_array(law, "apparent_viscosity", viscosity, RATES.shape)
-        return viscosity * RATES
-    if isinstance(law, ElastoviscoplasticLaw):
-        stress = law.flow_curve(RATES.copy())
-        if np.ndim(stress) == 0:  # a constant will do
-            return np.full(RATES.shape, require_number(law, "flow_curve", stress))
-        require_array(law, "flow_curve", stress, RATES.shape)
-        return stress
-    return None
-
-
 def _fit(
     law: type[Plugin], shared: dict[str, Any], missing: list[str], target: np.ndarray
 ) -> dict[str, float]:
     def curve(logarithms: np.ndarray) -> Any:
-        return flow_curve(law.model_validate(shared | dict(zip(missing, np.exp(logarithms), strict=True))))
+        at_values = shared | dict(zip(missing, np.exp(logarithms), strict=True))
+        return flow_curve(law.model_validate(at_values), RATES)
 
     at = np.zeros(len(missing))
     for _ in range(ITERATIONS):

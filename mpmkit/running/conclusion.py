@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+from ..case.ending import conditions, latest
 from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
-from ..output.summary import UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
+from ..output.summary import FINISHED, UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
 from ..solver import density_watch
 from ..solver.simulation import Simulation
 from .lift import from_lift, lift_start
@@ -30,6 +31,7 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
     """
     recorder.add_last_row()
     recorder.add_last_frame()
+    recorder.add_last_moment()
     summary = _summary(recorder, ended, wall_time)
     recorder.write()
     _write_summary(recorder, summary)
@@ -48,6 +50,7 @@ def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
     for part in (
         recorder.add_last_row,
         recorder.add_last_frame,
+        recorder.add_last_moment,
         lambda: summary.update(_summary(recorder, ended, wall_time)),
         recorder.write,
         lambda: _write_summary(recorder, summary),
@@ -77,14 +80,21 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
         steps=simulation.steps,
         wall_time=wall_time,
         stopped_because=ended,
+        ended_by=recorder.ending.why or None,
         plugins=plugins_used(simulation.case),
     )
     attributes |= numbers(summary)
-    state = state_at_end(summary)
+    said = [sentence for sentence in (summary["ended_by"], state_at_end(summary)) if sentence is not None]
     LOGGER.info(
         "%s after %d steps, t = %.6g s%s",
-        ended, simulation.steps, simulation.time, "" if state is None else f"; {state}",
+        ended, simulation.steps, simulation.time, "".join(f"; {sentence}" for sentence in said),
     )  # fmt: skip
+    until = simulation.case.until
+    if ended == FINISHED and conditions(until):
+        LOGGER.warning(
+            "the run has come to until.at_most, %g s, before %s",
+            latest(until), " or ".join(conditions(until)),
+        )  # fmt: skip
     found = [
         f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
         for name, unit in UNITS.items()

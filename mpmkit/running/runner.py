@@ -145,7 +145,7 @@ def resume(
     require_memory(found)
     files = RunDirectory(path)
     with files.claimed(resume=True):
-        state, identity_ = last_checkpoint(path, found)
+        state, identity_ = last_checkpoint(path, before, found)
         with open_log(files.log):
             with blaming_plugins(plugins_of(found)):
                 simulation = Simulation(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..case.ending import ending
 from ..case.faces import Stick
 from ..case.model import Case, Face
 from .lift import lift_start
@@ -16,8 +17,14 @@ FLOORS = {
 
 
 def setting(case: Case) -> list[str]:
-    """Sentences on the floor, on the release of the material, and on the walls."""
-    return [*_floor_and_release(case), *wall_sentences(case)]
+    """Sentences on the domain, the floor, the release of the material, the walls, and the end."""
+    end = ending(case.until)
+    return [
+        *case.grid.extensions,
+        *_floor_and_release(case),
+        *wall_sentences(case),
+        *([] if end is None else [end]),
+    ]
 
 
 def _floor_and_release(case: Case) -> list[str]:

@@ -63,5 +63,5 @@ def _motion(wall: Wall, case: Case) -> str:
     motion = getattr(wall.surface, "motion", None)
     if isinstance(motion, Motion):
         return motion.in_words(case.space_.axes)
-    fastest = audit.placed(wall.surface, case.space_).fastest(0.0, case.until)
+    fastest = audit.placed(wall.surface, case.space_).fastest(0.0, case.end)
     return f"moves at up to {fastest:.3g} m/s" if fastest > 0 else "at rest"

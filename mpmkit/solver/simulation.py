@@ -11,6 +11,7 @@ from ..case.plugins import plugins_of
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
+from .diagnosed import diagnosed
 from .grid import Grid
 from .guards import Guards, stop
 from .measures import Measures
@@ -35,7 +36,7 @@ class Simulation:
     """Particles, grid and schemes of a case, advanced step by step.
 
     >>> simulation = Simulation(case)
-    >>> while simulation.time < case.until:
+    >>> while simulation.time < case.end:
     ...     simulation.advance()
     """
 
@@ -144,7 +145,7 @@ class Simulation:
             of_materials = [
                 sentence
                 for group in self.particles.groups
-                for sentence in group.warnings(self.case.scale, self.case.until)
+                for sentence in group.warnings(self.case.scale, self.case.end)
             ]
             return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
@@ -205,6 +206,16 @@ class Simulation:
         if changed:
             self.operations.allocate()
             self.guards.accept_changes()
+
+    def measured(self) -> dict[str, float | np.ndarray]:
+        """What the history records of every scene, by the names of its variables, at the present step."""
+        found = self.measures(self.particles) | {
+            "redistribution_energy": self.redistribution_energy,
+            "time_step": self.time_step,
+            "mach_number": self.mach_number,
+        }
+        with self.blaming:
+            return found | diagnosed(self)
 
     @property
     def mapped_mass(self) -> float | None:

@@ -111,7 +111,7 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
         case = parse_case(data, source="its case")
     except (CaseError, ValueError) as error:
         raise CaseError(f"study '{study.name}', member {title}: {error}") from None
-    return Member(labels, resolved(case), case, remarks)
+    return Member(labels, resolved(case), case, [*remarks, *case.grid.extensions])
 
 
 def _outermost_first(changes: Changes) -> Changes:

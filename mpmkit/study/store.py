@@ -23,7 +23,7 @@ from .model import Study
 from .table import table
 from .work import FAILED, Outcome
 
-DRAWN = ("table.md", "histories.png", "differences.png", "chart.png")
+DRAWN = ("table.md", "histories.png", "differences.png", "chart.png", "index.html")
 """Files, beside ``results.nc``, that are made from all members together."""
 KINDS = {"labels": dict, "fate": str, "sentence": str, "summary": dict, "cost": dict}
 """What every ``member.json`` has."""
@@ -179,13 +179,15 @@ class Store:
         return record is not None and record["fate"] != FAILED
 
     def write(self, dataset: xarray.Dataset) -> None:
-        """Write everything there is, ``results.nc``, ``table.md`` and the figures."""
+        """Write everything there is, ``results.nc``, ``table.md``, the figures and the page."""
         from .figures import draw
+        from .page import write_page
 
         write_dataset(dataset, self.results)
         with replacing(self.path / "table.md") as partial:
             partial.write_text(table(dataset), encoding="utf-8")
         draw(dataset, self.path)
+        write_page(dataset, self.path)
 
     def history(self, member: Member) -> Path | None:
         """Its history; None where it left none."""

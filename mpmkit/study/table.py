@@ -33,7 +33,7 @@ def table(dataset: xarray.Dataset) -> str:
     for place in np.ndindex(dataset.fate.shape):
         member = dataset.isel(dict(zip(dimensions, place, strict=True)))
         cells = [str(member[name].item()) for name in dimensions]
-        cells += [_cell(float(member[name]), scale, form) for name, _, scale, form in COLUMNS]
+        cells += [shown_in_table(float(member[name]), scale, form) for name, _, scale, form in COLUMNS]
         cells.append(fate_of(member))
         lines.append(f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |")
     return "\n".join(lines) + "\n"
@@ -47,5 +47,6 @@ def fate_of(member: xarray.Dataset) -> str:
     return f"{fate} at {time:.3g} s" if math.isfinite(time) else fate
 
 
-def _cell(value: float, scale: float, form: str) -> str:
+def shown_in_table(value: float, scale: float, form: str) -> str:
+    """A number in the unit and the format of its column."""
     return f"{value * scale:{form}}" if math.isfinite(value) else "–"

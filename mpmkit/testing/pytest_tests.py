@@ -7,7 +7,9 @@ from collections.abc import Callable
 from ..contracts import (
     ConstitutiveLaw,
     Contact,
+    Diagnostic,
     EquationOfState,
+    ParticleField,
     Redistribution,
     Refinement,
     ShapeFunction,
@@ -19,9 +21,11 @@ from ..contracts import (
 from .checks import (
     Check,
     contact_checks,
+    diagnostic_checks,
     equation_of_state_checks,
     law_checks,
     order_checks,
+    particle_field_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
@@ -148,6 +152,23 @@ def contact_tests(contact: Contact) -> Test:
     makes no difference.
     """
     return _tests(contact_checks(contact))
+
+
+def diagnostic_tests(diagnostic: Diagnostic) -> Test:
+    """A test function, as that of ``law_tests``, for a diagnostic, in each space that can hold it.
+
+    Columns that are declared, a number for each, the scene left alone, and the same for the same particles.
+    The scene of the kit is a block of oil on the floor ``z_min``, from 0 to 0.25 m high, without other walls.
+    """
+    return _tests(diagnostic_checks(diagnostic))
+
+
+def particle_field_tests(field: ParticleField) -> Test:
+    """A test function, as that of ``law_tests``, for a particle field.
+
+    An array of the declared shape, the scene left alone, and particles that do not know each other.
+    """
+    return _tests(particle_field_checks(field))
 
 
 def _tests(checks: list[Check]) -> Test:

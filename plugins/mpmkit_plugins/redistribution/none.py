@@ -22,7 +22,7 @@ class NoRedistribution(Redistribution):
         laws = [body.material.constitutive_law for body in case.bodies]
         fluids = [law for law in laws if law.uses_equation_of_state]
         free_fall = math.sqrt(case.height / (math.hypot(*case.gravity_vector) or math.inf))
-        if not fluids or not free_fall or case.until < LONG * free_fall:
+        if not fluids or not free_fall or case.end < LONG * free_fall:
             return []
         if not _is_driven(case) and not any(map(_is_thin, fluids)):
             return []

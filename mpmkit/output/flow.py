@@ -1,0 +1,120 @@
+"""The flow of a run for its page: a few fields of some particles at some moments."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import CaseError
+from .atomic import replacing
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Particles at one time, in the order of their numbers."""
+
+    time: float
+    """s"""
+    share: float
+    """part of all particles that was kept"""
+    number: np.ndarray
+    """(n,) name of each particle through the run"""
+    body: np.ndarray
+    """(n,) number of its body"""
+    yielded: np.ndarray
+    """(n,) 1 where the material has yielded, else 0"""
+    position: np.ndarray
+    """(n, dim), m"""
+    half_size: np.ndarray
+    """(n, dim) half sides of the box that it stands for, m"""
+    speed: np.ndarray
+    """(n,), m/s"""
+    shear_rate: np.ndarray
+    """(n,), 1/s"""
+    pressure: np.ndarray
+    """(n,), Pa, positive in compression"""
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+    def only(self, kept: np.ndarray, share: float = 1.0) -> Moment:
+        """The moment with some of its particles, which are a ``share`` of them."""
+        arrays = {name: getattr(self, name)[kept] for name in TYPES}
+        return replace(self, share=self.share * share, **arrays)
+
+
+TYPES = {
+    "number": np.uint32,
+    "body": np.uint8,
+    "yielded": np.uint8,
+    "position": np.float32,
+    "half_size": np.float16,
+    "speed": np.float16,
+    "shear_rate": np.float16,
+    "pressure": np.float32,
+}
+"""How each array is kept; half precision is good to a part in 2000."""
+LARGEST = float(np.finfo(np.float16).max)
+"""What is above it in half precision is kept as this."""
+
+
+def moment_of(time: float, share: float, fields: Mapping[str, np.ndarray]) -> Moment:
+    """A moment of arrays ``fields``, by the names of ``TYPES``, in any order of the particles."""
+    order = np.argsort(fields["number"], kind="stable")
+    arrays = {}
+    for name, kind in TYPES.items():
+        values = np.asarray(fields[name])[order]
+        arrays[name] = (np.minimum(values, LARGEST) if kind == np.float16 else values).astype(kind)
+    return Moment(float(time), float(share), **arrays)
+
+
+def arrays_of(moments: Sequence[Moment]) -> dict[str, np.ndarray]:
+    """Moments as a few arrays: ``time``, ``share``, ``count``, and each field of all moments end to end."""
+    found = {
+        "time": np.array([moment.time for moment in moments]),
+        "share": np.array([moment.share for moment in moments]),
+        "count": np.array([len(moment) for moment in moments], dtype=np.int64),
+    }
+    for name, kind in TYPES.items():
+        parts = [getattr(moment, name) for moment in moments]
+        found[name] = np.concatenate(parts) if parts else np.zeros(0, dtype=kind)
+    return found
+
+
+def moments_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Moment]:
+    """The moments of ``arrays_of``; raises KeyError where something is missing."""
+    cuts = np.cumsum(arrays["count"])[:-1]
+    parts = [np.split(arrays[name], cuts) for name in TYPES]
+    return [
+        Moment(float(time), float(share), *fields)
+        for time, share, *fields in zip(arrays["time"], arrays["share"], *parts, strict=False)
+    ]
+
+
+def write_flow(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
+    """Write the arrays of moments; the file at ``path`` is whole at every moment.
+
+    Raises:
+        OutputError: where it cannot be written.
+    """
+    with replacing(path) as partial, partial.open("wb") as file:
+        np.savez(file, allow_pickle=False, **arrays)
+
+
+def read_flow(path: Path) -> list[Moment]:
+    """The moments in a file; none where there is no file.
+
+    Raises:
+        CaseError: where it is no such file.
+    """
+    if not path.is_file():
+        return []
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            return moments_of_arrays(arrays)
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise CaseError(f"'{path}' does not hold the flow of a run: {error}") from error

@@ -1,0 +1,37 @@
+"""The frames that a movie shows: evenly in time, so that it runs as the material does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import CaseError
+from ..run_results import RunResults
+
+LEAST = 2
+"""Frames of which something moves."""
+
+
+def shown_frames(results: RunResults, directory: Path) -> list[tuple[float, Path]]:
+    """Times, s, and files of the frames to show.
+
+    A run also has frames at the snapshot times of its report, which lie between the others: if they were
+    shown, the movie would halt at them.
+
+    Raises:
+        CaseError: there are too few; the sentence names the key by which a run gets more.
+    """
+    frames = results.frames
+    if len(frames) < LEAST:
+        until = results.case.get("until", 1.0)
+        there = "no frames" if not frames else "only one frame"
+        raise CaseError(
+            f"the run in '{directory}' has {there}, and a movie needs at least {LEAST}: run it again with a "
+            f"shorter output.frame_interval, such as --set output.frame_interval={until / 100:.3g}"
+        )
+    times = np.array([time for time, _ in frames])
+    # Snapshots make some gaps shorter, and a rounded step others longer: the median is the interval.
+    wanted = np.arange(times[0], times[-1], float(np.median(np.diff(times))))
+    chosen = {int(np.argmin(np.abs(times - time))) for time in wanted} | {len(times) - 1}
+    return [frames[index] for index in sorted(chosen)]

@@ -1,0 +1,67 @@
+"""The page of a run: one file that a browser shows without a network, made from the run's directory alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...output import RunDirectory
+from ...output.atomic import cannot_write, replacing
+from ...version import __version__
+from . import balance, flow_curves, headline, histories, numerics, player, repeat
+from .assembled import assembled
+from .section import Section
+from .source import Source, read_source
+
+__all__ = ["MOST_BYTES", "page_of", "write_page"]
+
+MOST_BYTES = 3_000_000
+"""Size of a page, at the most."""
+BEFORE = (headline,)
+BEHIND = (histories, flow_curves, balance, numerics, repeat)
+"""Sections before and behind the player, which gets the room that they leave. A new section is a file, and
+its place here."""
+
+
+def page_of(directory: Path, live: bool = False) -> str:
+    """The page of a run as HTML; the run may still be at work.
+
+    Args:
+        directory: of the run; its history must have a row.
+        live: whether the scripts of the page may ask the server that it came from for newer data.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+    """
+    source = read_source(Path(directory))
+    before, behind = _sections(source, BEFORE), _sections(source, BEHIND)
+    results = source.results
+    made_by = f"Made by mpmkit {__version__} from the directory of the run. It needs no network."
+
+    def page(flow: Section | None) -> str:
+        sections = [*before, *([] if flow is None else [flow]), *behind]
+        return assembled(results.title, results.case.get("description", ""), sections, made_by, live)
+
+    room = MOST_BYTES - len(page(None).encode()) - 20_000
+    return page(player.section(source, room))
+
+
+def _sections(source: Source, modules: tuple) -> list[Section]:
+    found = [module.section(source) for module in modules]
+    return [section for section in found if section is not None]
+
+
+def write_page(directory: Path) -> Path:
+    """Write the page of a run to ``report/index.html``.
+
+    Raises:
+        CaseError: where the directory does not hold a run.
+        OutputError: where it cannot be written.
+    """
+    path, text = RunDirectory(directory).page, page_of(directory)
+    try:
+        path.parent.mkdir(exist_ok=True)
+    except OSError as error:
+        raise cannot_write(path.parent, error) from error
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+    return path

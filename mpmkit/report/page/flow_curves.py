@@ -1,0 +1,139 @@
+"""Section: the flow curve of each material, and which part of it the run has used."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from ...case.model import Material
+from ...contracts import Plugin
+from ...errors import GuardStop
+from ...registry.blame import blaming_plugins
+from ...rheology.flow_curve import flow_curve
+from .histories import listed
+from .section import Section, chart_place, note, pairs
+from .source import Source
+from .words import given, number
+
+POINTS = 121
+DECADES = (1e-3, 1e3)
+"""Shear rates, 1/s, of the curve of a material that has not been sheared."""
+BEYOND = 10.0
+"""How far the curve goes on beyond what was reached."""
+MOST, LEAST = 0.95, 0.05
+"""Between these parts of the sheared material lies the range that is shaded."""
+SLOWEST = 1e-3
+"""Part of the largest shear rate below which material counts as at rest."""
+
+
+def section(source: Source) -> Section | None:
+    """A chart for each material that is a fluid, and the parameters of all."""
+    if source.case is None:
+        body = note(
+            "The flow curves cannot be drawn here: the case names a plug-in that is not installed, or its "
+            "file cannot be read."
+        )
+        return Section("materials", "Materials", body)
+    body, charts = "", {}
+    for count, (material, bodies) in enumerate(_materials(source)):
+        name, law = f"material-{count}", material.constitutive_law
+        reached = _reached(source, bodies)
+        curve = _chart(law, reached)
+        body += f"<h3>{escape(law.name)}</h3>" + pairs(_parameters(material))
+        if curve is None:
+            body += note("This law is no fluid with a flow curve.")
+            continue
+        charts[name] = curve
+        body += chart_place(name, "Shear stress against shear rate") + note(_words(reached))
+    return Section("materials", "Materials", body, {"charts": charts})
+
+
+def _materials(source: Source) -> list[tuple[Material, list[int]]]:
+    """Each material once, and the numbers of the bodies that are of it."""
+    assert source.case is not None
+    found: list[tuple[Material, list[int]]] = []
+    for number_, body in enumerate(source.case.bodies):
+        for material, bodies in found:
+            if material == body.material:
+                bodies.append(number_)
+                break
+        else:
+            found.append((body.material, [number_]))
+    return found
+
+
+def _parameters(material: Material) -> list[tuple[str, str]]:
+    found = [("Density", f"{given(material.density)} kg/m³")]
+    law = material.constitutive_law
+    for key, field in type(law).model_fields.items():
+        value = getattr(law, key)
+        if value is None:
+            continue
+        extra = field.json_schema_extra
+        unit = extra.get("unit", "") if isinstance(extra, dict) else ""
+        shown = given(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
+        found.append((key.replace("_", " ").capitalize(), f"{shown} {'' if unit == '1' else unit}".rstrip()))
+    return found
+
+
+def _reached(source: Source, bodies: list[int]) -> tuple[float, float, float] | None:
+    """Shear rates, 1/s, between which most of the sheared material was, and the largest."""
+    rates: list[np.ndarray] = []
+    weights: list[np.ndarray] = []
+    times = [moment.time for moment in source.moments]
+    passed = np.gradient(times) if len(times) > 1 else np.ones(len(times))
+    for moment, weight in zip(source.moments, passed, strict=True):
+        of = np.isin(moment.body, bodies)
+        size = moment.half_size[of].astype(float)
+        volume = size.prod(axis=1) * (moment.position[of, 0] if source.space.radial else 1.0)
+        rates.append(moment.shear_rate[of].astype(float))
+        weights.append(volume * weight / moment.share)
+    if not rates:
+        return None
+    rate, shares = np.concatenate(rates), np.concatenate(weights)
+    largest = float(rate.max(initial=0.0))
+    sheared = (rate > SLOWEST * largest) & (shares > 0)
+    if not sheared.any():
+        return None
+    order = np.argsort(rate[sheared])
+    summed = np.cumsum(shares[sheared][order])
+    low, high = np.interp([LEAST, MOST], summed / summed[-1], rate[sheared][order])
+    return float(low), float(high), largest
+
+
+def _chart(law: Plugin, reached: tuple[float, float, float] | None) -> dict[str, Any] | None:
+    """Stress against shear rate on logarithmic axes, with the range that the run has reached."""
+    low, high = DECADES if reached is None else (reached[0] / BEYOND, reached[2] * BEYOND)
+    rates = np.geomspace(10 ** math.floor(math.log10(low)), 10 ** math.ceil(math.log10(high)), POINTS)
+    try:
+        with blaming_plugins([("law", law)]):
+            stress = flow_curve(law, rates)
+    except GuardStop:  # it is no reason to have no page
+        return None
+    if stress is None or not np.isfinite(stress).all() or not (stress > 0).any():
+        return None
+    curve = {"label": "shear stress", "values": listed(np.where(stress > 0, stress, np.nan))}
+    return {
+        "title": "Flow curve: shear stress against shear rate",
+        "unit": "Pa",
+        "x": listed(rates),
+        "xLabel": "shear rate",
+        "xUnit": "1/s",
+        "curves": [curve],
+        "logarithmic": True,
+        "band": None if reached is None else {"from": reached[0], "to": reached[1], "most": reached[2]},
+    }
+
+
+def _words(reached: tuple[float, float, float] | None) -> str:
+    if reached is None:
+        return "The material was not sheared in this run."
+    low, high, largest = reached
+    return (
+        f"Nine tenths of the material that was sheared had shear rates between {number(low, 2)} and "
+        f"{number(high, 2)} 1/s (shaded); the largest was {number(largest, 2)} 1/s. Measure the material in "
+        "that range: what the curve does elsewhere has hardly any part in this result."
+    )

@@ -1,0 +1,194 @@
+"""Section: the flow, played."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from ...contracts.law import initial_state
+from ...errors import GuardStop
+from ...output.flow import Moment
+from ...registry.blame import blaming_plugins
+from ..domain import domain_of, symmetry_plane
+from .colour_maps import stops
+from .packing import Packed, Scale, packed
+from .section import Section, note, paragraph
+from .source import Source
+from .thinning import Thinned, fitting
+from .walls import walls_of
+from .words import number
+
+NO_WALLS = ("open", "periodic", "symmetry")
+"""Faces of the domain that are none."""
+TRIMMED = 99.5
+"""Percentile of a quantity at which its colours end: a single particle does not set the scale of all."""
+DECADES = 1e-3
+"""Least shear rate that has a colour of its own, over the largest."""
+LABELS = {
+    "speed": ("Speed", "m/s", "how fast the material moves"),
+    "shear_rate": (
+        "Shear rate",
+        "1/s",
+        "how fast the material is sheared; the scale goes by factors of ten",
+    ),
+    "yielded": ("Yielded zone", "", "where the stress is beyond the yield stress, the material flows"),
+    "pressure": ("Pressure", "Pa", "of the material, positive where it is pressed together"),
+}
+
+
+def section(source: Source, room: int) -> Section | None:
+    """The player, whose data take up at most about ``room`` letters; None without a flow."""
+    if not source.moments:
+        return Section(
+            "flow", "Flow", note("This run has kept no picture of its flow: set output.report to true.")
+        )
+    walls = walls_of(source)
+    for_walls = sum(len(text) for wall in walls for shape in wall["shapes"] for text in shape.values())
+    for_walls += sum(12 * len(place) for wall in walls for place in wall["places"])
+    scales = _scales(source)
+    longest = _longest(source)
+
+    def pack(moments: Sequence[Moment]) -> Packed:
+        return packed(moments, scales, _boxes(source.space.dim), longest)
+
+    thinned = fitting(source.moments, pack, max(room - for_walls, 10_000))
+    if len(thinned.moments) < len(source.moments):  # the places of walls are those at the moments
+        source = Source(source.results, thinned.moments, source.log, source.case, source.directory)
+        walls = walls_of(source)
+    data = _scene(source) | {
+        "packing": thinned.packed.description,
+        "blob": thinned.packed.text,
+        "quantities": [_quantity(name, scale) for name, scale in scales.items()],
+        "walls": walls,
+    }
+    return Section("flow", "Flow", _controls(source, list(scales)) + _said(thinned, source), data)
+
+
+def _boxes(dim: int) -> np.ndarray:
+    """Exponents of the half sides in each size that is kept: both of them, or the mean one of a cuboid."""
+    return np.eye(2) if dim == 2 else np.full((1, 3), 1 / 3)
+
+
+def _longest(source: Source) -> float:
+    """Half side of the largest box that is drawn, m: a longer one does not say where material is."""
+    drawn = max(float(moment.half_size.max()) for moment in source.moments)
+    return min(drawn, source.results.case["grid"]["cell_size"] / 2)
+
+
+def _scales(source: Source) -> dict[str, Scale]:
+    moments = source.moments
+
+    def highest(name: str) -> float:
+        return max(float(np.percentile(getattr(moment, name), TRIMMED)) for moment in moments)
+
+    scales = {"speed": Scale(0.0, highest("speed") or 1.0)}
+    if (most := highest("shear_rate")) > 0:
+        scales["shear_rate"] = Scale(DECADES * most, most, logarithmic=True)
+    if _can_yield(source):
+        scales["yielded"] = Scale(0.0, 1.0)
+    pressure = np.concatenate([moment.pressure for moment in moments])
+    low, high = np.percentile(pressure, [100 - TRIMMED, TRIMMED])
+    if high > low:
+        scales["pressure"] = Scale(float(low), float(high))
+    return scales
+
+
+def _can_yield(source: Source) -> bool:
+    """Whether a law of the case has a yield point; of a case that cannot be read, whether anything rests."""
+    if source.case is None:
+        return not all(moment.yielded.all() for moment in source.moments)
+    laws = [body.material.constitutive_law for body in source.case.bodies]
+    try:
+        with blaming_plugins([("law", law) for law in laws]):
+            return any(law.yield_point(initial_state(law, 1)) is not None for law in laws)
+    except GuardStop:  # a plug-in at fault is no reason to have no page
+        return False
+
+
+def _quantity(name: str, scale: Scale) -> dict[str, Any]:
+    label, unit, meaning = LABELS[name]
+    return {
+        "name": name,
+        "label": label,
+        "unit": unit,
+        "meaning": meaning,
+        "low": scale.low,
+        "high": scale.high,
+        "logarithmic": scale.logarithmic,
+        "colours": stops(name),
+    }
+
+
+def _scene(source: Source) -> dict[str, Any]:
+    """The space around the material: faces, planes of symmetry, the part that is looked at."""
+    results, space = source.results, source.space
+    grid, axes = results.case["grid"], space.axes
+    lower, upper = np.array([grid["domain"][axis] for axis in axes], dtype=float).T
+    faces = grid.get("faces", {})
+    closed = [
+        [faces.get(f"{axis}_{side}", "open") not in NO_WALLS for side in ("min", "max")] for axis in axes
+    ]
+    mirrors = [0.0 if axis == "r" else symmetry_plane(results, axis) for axis in axes[:-1]]
+    periods = [
+        float(high - low) if faces.get(f"{axis}_min") == "periodic" else None
+        for axis, low, high in zip(axes, lower, upper, strict=True)
+    ]
+    if space.dim == 2:  # as in the pictures of the report
+        domain = domain_of(results)
+        assert domain.mirror == mirrors[0]
+    low = np.min([(m.position - m.half_size).min(axis=0) for m in source.moments], axis=0).astype(float)
+    high = np.max([(m.position + m.half_size).max(axis=0) for m in source.moments], axis=0).astype(float)
+    return {
+        "space": space.name,
+        "axes": ["x" if axis == "r" else axis for axis in axes] if space.dim == 3 else list(axes),
+        "domain": {"lower": lower.tolist(), "upper": upper.tolist(), "closed": closed, "periods": periods},
+        "mirrors": [*mirrors, None],
+        "material": {"lower": np.maximum(low, lower).tolist(), "upper": np.minimum(high, upper).tolist()},
+        "cell": grid["cell_size"],
+    }
+
+
+def _controls(source: Source, quantities: list[str]) -> str:
+    choices = "".join(
+        f'<label><input type="radio" name="colour" value="{name}"{" checked" if row == 0 else ""}>'
+        f"<span>{escape(LABELS[name][0])}</span></label>"
+        for row, name in enumerate(quantities)
+    )
+    how = "Drag to turn, scroll or pinch to come nearer; arrow keys turn, + and − come nearer."
+    solid = source.space.dim == 3
+    stage = "The material in three dimensions" if solid else "Section through the material"
+    return (
+        f'<div class="player" data-player>'
+        f'<fieldset class="choices"><legend>Colour by</legend>{choices}</fieldset>'
+        f'<div class="stage" tabindex="0" role="img" aria-label="{stage}"><canvas class="under"></canvas>'
+        '<canvas class="material"></canvas>'
+        '<canvas class="over"></canvas><output class="reading" aria-live="off"></output></div>'
+        '<div class="bar" aria-hidden="true"><canvas></canvas></div><p class="meaning"></p>'
+        '<div class="transport"><button type="button" class="play" aria-label="Play">▶</button>'
+        '<input type="range" class="time" min="0" max="1000" value="0" step="1" aria-label="Time">'
+        '<output class="clock">t = 0 s</output>'
+        '<label class="pace">Speed <select aria-label="Speed of playing"></select></label></div>'
+        '<noscript><p class="note">The player needs JavaScript.</p></noscript></div>'
+        + (note(how) if source.space.dim == 3 else "")
+    )
+
+
+def _said(thinned: Thinned, source: Source) -> str:
+    """How much of the run the player shows."""
+    moments, share = thinned.moments, min(moment.share for moment in thinned.moments)
+    said = (
+        f"The player shows {len(moments)} moments of the run; between them the material moves in straight "
+        "lines."
+    )
+    if share < 1:
+        said += (
+            f" To keep the page small it draws one in {number(1 / share, 2)} particles, each as large as "
+            "those that it stands for; the frames in the directory of the run have all of them."
+        )
+    if any(plane is not None for plane in _scene(source)["mirrors"]):
+        cut = "half of it" if source.space.dim == 2 else "a part of it"
+        said += f" The run computes {cut}; the rest is its mirror image."
+    return paragraph(said, "note")

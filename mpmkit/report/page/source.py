@@ -1,0 +1,123 @@
+"""What a page is made of, read from the directory of a run, which may still be at work."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ...case import load_case
+from ...case.model import Case
+from ...errors import CaseError, MpmkitError
+from ...output import RunDirectory, read_frame, read_frames, read_wall_frames
+from ...output.flow import TYPES, Moment, moment_of, read_flow
+from ...output.netcdf import read_dataset
+from ...output.summary import trusted_rows
+from ...spaces import SPACES, Space
+from ..domain import inside
+from ..run_results import RunResults
+
+LINE = re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d+ (?P<level>[A-Z]+) +(?P<said>.*)$")
+START = "command: "
+"""How the log of every start of a run begins."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """A line of the log."""
+
+    level: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Source:
+    """A run as its page sees it."""
+
+    results: RunResults
+    moments: list[Moment]
+    """of the flow, in order of time, with the particles that can be drawn"""
+    log: list[Said]
+    case: Case | None
+    """None where it cannot be read here, as where a plug-in is not installed"""
+    directory: Path
+
+    @property
+    def running(self) -> bool:
+        """Whether the run has not come to its end yet."""
+        return not self.results.summary
+
+    @property
+    def space(self) -> Space:
+        return SPACES[self.results.case["space"]]
+
+    @cached_property
+    def last_start(self) -> list[Said]:
+        """The log from the last start of the run on: a run that goes on says all again."""
+        starts = [row for row, said in enumerate(self.log) if said.text.startswith(START)]
+        return self.log[starts[-1] :] if starts else self.log
+
+
+def read_source(directory: Path) -> Source:
+    """Read what there is of a run.
+
+    Raises:
+        CaseError: there is no run, or not even its first row.
+    """
+    run = RunDirectory(directory)
+    try:
+        case = json.loads(run.case.read_text(encoding="utf-8"))
+        summary = json.loads(run.summary.read_text(encoding="utf-8")) if run.summary.exists() else {}
+        history = read_dataset(run.history)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise CaseError(f"'{directory}' does not hold the results of a run: {error}") from error
+    rows = trusted_rows(history, summary["stopped_because"]) if summary else history
+    results = RunResults(case, summary, rows, read_frames(run.frames), read_wall_frames(run.frames))
+    moments = read_flow(run.flow) or _moments_of_frames(results)
+    drawable = [drawn for moment in moments if len(drawn := _drawable(moment, results))]
+    return Source(results, drawable, _read_log(run.log), _read_case(run.case), run.path)
+
+
+def _moments_of_frames(results: RunResults) -> list[Moment]:
+    """The flow of a run that has kept none for its page: what its frames show."""
+    dim = SPACES[results.case["space"]].dim
+    found = []
+    for time, path in results.frames:
+        frame = read_frame(path)
+        number = frame.get("particle", np.arange(len(frame["position"])))
+        fields = frame | {"position": frame["position"][:, :dim], "number": number}
+        if "half_size" in fields:
+            fields["half_size"] = fields["half_size"][:, :dim]
+        if TYPES.keys() <= fields.keys():
+            found.append(moment_of(time, 1.0, fields))
+    return found
+
+
+def _drawable(moment: Moment, results: RunResults) -> Moment:
+    """What is finite and in the domain: a guard has stopped the run of the rest."""
+    position = np.zeros((len(moment), 3))
+    position[:, : moment.position.shape[1]] = moment.position
+    kept = inside(results, position) & np.isfinite(moment.half_size).all(axis=1)
+    for values in (moment.speed, moment.shear_rate, moment.pressure):
+        kept &= np.isfinite(values)
+    return moment if kept.all() else moment.only(kept)
+
+
+def _read_log(path: Path) -> list[Said]:
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+    found = [LINE.match(line) for line in lines]  # what does not match is a part of a traceback
+    return [Said(match["level"], match["said"]) for match in found if match]
+
+
+def _read_case(path: Path) -> Case | None:
+    try:
+        return load_case(path)
+    except MpmkitError:
+        return None

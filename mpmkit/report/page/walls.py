@@ -1,0 +1,122 @@
+"""The walls of a scene as the player draws them: each as it was drawn once, and its place at every moment."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...case.plugins import plugins_of
+from ...errors import MpmkitError
+from ...geometry import Motion
+from ...output import read_wall_frame
+from ...registry import audit
+from ...registry.blame import blaming_plugins
+from .source import Source
+
+MOST_PARTS = 12_000
+"""Triangles or segments of a drawing on the page, at the most."""
+LOOKS = 6
+"""Drawings of a wall that moves as a whole among which the most complete is looked for."""
+NOT_THERE = -1
+
+
+def walls_of(source: Source) -> list[dict[str, Any]]:
+    """For each wall its drawings, and for each moment which of them is seen, how turned and how shifted."""
+    names = dict.fromkeys(name for walls in source.results.walls.values() for name in walls)
+    found = []
+    for name in names:
+        files = {time: walls[name] for time, walls in source.results.walls.items() if name in walls}
+        shapes, places = _moving(source, name, files) or _as_drawn(source, files)
+        found.append({"name": name, "shapes": shapes, "places": places})
+    return found
+
+
+def _moving(source: Source, name: str, files: dict[float, Path]) -> tuple[list, list] | None:
+    """Of a wall whose motion is the framework's: one drawing, and its motion; None of any other."""
+    case, dim = source.case, source.space.dim
+    wall = None if case is None else case.walls.get(name)
+    if case is None or wall is None:
+        return None
+    motion = getattr(wall.surface, "motion", None)
+    if not isinstance(motion, Motion | None):
+        return None
+    time, points, parts = max(
+        ((t, *_drawn(path, dim)) for t, path in _some(files)), key=lambda drawn: len(drawn[2])
+    )
+    try:
+        with blaming_plugins(plugins_of(case)):
+            surface = audit.placed(wall.surface, case.space_)
+            there = [surface.present(moment.time) for moment in source.moments]
+    except MpmkitError:
+        return None
+    eye, origin = np.eye(dim), np.zeros((1, dim))
+    if motion is None:
+        poses = [(eye, origin[0])] * len(source.moments)
+    else:
+        points = motion.back(points, time)
+        # x = Q (X - b), where b is what comes back from the origin, since X = Qᵀ x + b.
+        turns = [motion.turned(eye, moment.time).T for moment in source.moments]
+        poses = [
+            (turn, -turn @ motion.back(origin, moment.time)[0])
+            for turn, moment in zip(turns, source.moments, strict=True)
+        ]
+    places = [_place(0 if seen else NOT_THERE, *pose) for seen, pose in zip(there, poses, strict=True)]
+    return [_shape(points, parts)], places
+
+
+def _some(files: dict[float, Path]) -> list[tuple[float, Path]]:
+    """A few of the drawings, each file once."""
+    once = {path: time for time, path in reversed(files.items())}
+    listed = [(time, path) for path, time in once.items()]
+    return listed[:: max(1, len(listed) // LOOKS)]
+
+
+def _as_drawn(source: Source, files: dict[float, Path]) -> tuple[list, list]:
+    """Of any other wall: its drawing at the frame before."""
+    paths = list(dict.fromkeys(files.values()))
+    shapes = [_shape(*_drawn(path, source.space.dim)) for path in paths]
+    frames = sorted(source.results.walls)
+    eye, origin = np.eye(source.space.dim), np.zeros(source.space.dim)
+    places = []
+    for moment in source.moments:
+        frame = frames[max(0, int(np.searchsorted(frames, moment.time * (1 + 1e-9), side="right")) - 1)]
+        path = files.get(frame)
+        places.append(_place(NOT_THERE if path is None else paths.index(path), eye, origin))
+    return shapes, places
+
+
+def _drawn(path: Path, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    points, parts, _ = read_wall_frame(path)
+    return points[:, :dim], parts
+
+
+def _place(shape: int, turn: np.ndarray, shift: np.ndarray) -> list[float]:
+    """Number of the drawing, the matrix by rows, and the shift, m."""
+    return [shape, *(float(f"{value:.7g}") for value in (*turn.ravel(), *shift))]
+
+
+def _shape(points: np.ndarray, parts: np.ndarray) -> dict[str, str]:
+    points, parts = _coarser(points, parts)
+    return {"points": _text(points, np.float32), "parts": _text(parts, np.uint32)}
+
+
+def _coarser(points: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The drawing with points that are near each other made one, until it has few enough parts."""
+    extent = np.ptp(points, axis=0).max()
+    cells = 256
+    while len(parts) > MOST_PARTS and cells > 4:
+        cell = np.floor((points - points.min(axis=0)) / extent * cells).astype(np.int64)
+        _, first, of = np.unique(cell, axis=0, return_index=True, return_inverse=True)
+        merged = of.ravel()[parts]
+        whole = np.all([merged[:, a] != merged[:, a - 1] for a in range(merged.shape[1])], axis=0)
+        points, parts = points[first], np.unique(np.sort(merged[whole], axis=1), axis=0)
+        cells //= 2
+    return points, parts
+
+
+def _text(array: np.ndarray, kind: type) -> str:
+    plain = np.ascontiguousarray(array, dtype=np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(plain.tobytes()).decode()

@@ -1,0 +1,6 @@
+"""A run that has been made, opened from its directory for Python and notebooks."""
+
+from .progress import progress_bar
+from .run import Run, open_run
+
+__all__ = ["Run", "open_run", "progress_bar"]

@@ -1,0 +1,117 @@
+"""What a run keeps of its flow for the player of its page: few particles, few moments, chosen as it goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..kernels.tensors import shear_rate
+from ..output.flow import TYPES, Moment, arrays_of, moment_of, moments_of_arrays
+from ..solver.particle_fields import mean_pressure, yielded
+from ..solver.simulation import Simulation
+from ..solver.stateful import State, plain_state, restore_plain
+
+MOMENTS = 100
+"""Moments that are kept at the most."""
+LOOKS = 400
+"""Moments of a run that are looked at."""
+PARTICLES = 5000
+"""Particles of a moment that are kept, about; all of them where there are fewer."""
+GOLDEN = (5**0.5 - 1) / 2
+STANDSTILL = 0.5
+"""Change that a whole run of material at rest counts for."""
+
+
+class FlowRecord:
+    """Moments of the flow, closer together where much moves.
+
+    Between two moments lies a *change*: the RMS displacement of the particles over the height of the bodies,
+    and a small part for the time that passes. Where there are too many moments, the one goes that has the
+    least change around it. Which particles are kept depends on their numbers alone, and those are spread
+    evenly: a particle has the same number through the run, and what a split adds is thinned as the rest.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._height = simulation.case.height
+        self._until = simulation.case.end
+        self._share = 1.0
+        self._last = -1
+        """step of the last moment"""
+        self.moments: list[Moment] = []
+        self._changes: list[float] = []
+        """between each moment and the next"""
+
+    def state(self) -> State:
+        """The moments so far, and the changes between them."""
+        own = plain_state(self, but=("_height", "_until"))
+        found = own | {"changes/": np.array(self._changes)}
+        return found | {f"moments/{name}": array for name, array in arrays_of(self.moments).items()}
+
+    def restore(self, state: State) -> None:
+        """Go on after them."""
+        restore_plain(self, state)
+        self._changes = state["changes/"].tolist()
+        moments = {name.partition("/")[2]: array for name, array in state.items() if "moments/" in name}
+        self.moments = [_owned(moment) for moment in moments_of_arrays(moments)]
+
+    def add(self, simulation: Simulation) -> None:
+        """Add the present step, unless it is there; another moment may go for it."""
+        if self._last == simulation.steps:
+            return
+        self._last = simulation.steps
+        self.moments.append(self._moment(simulation))
+        if len(self.moments) > 1:
+            self._changes.append(self._change(*self.moments[-2:]))
+        if len(self.moments) > MOMENTS:
+            self._drop_the_least()
+
+    def _moment(self, simulation: Simulation) -> Moment:
+        p, grid = simulation.particles, simulation.grid
+        kept = self._kept(p.number)
+        if not kept.any():
+            kept[:1] = True
+        squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
+        fields = {
+            "number": p.number,
+            "body": p.body,
+            "yielded": yielded(p),
+            "position": p.position + grid.lower,
+            "half_size": p.box,
+            "speed": np.sqrt(squared),
+            "shear_rate": shear_rate(p.velocity_gradient),
+            "pressure": mean_pressure(p),
+        }
+        if not kept.all():
+            fields = {name: field[kept] for name, field in fields.items()}
+        return moment_of(simulation.time, self._share, fields)
+
+    def _kept(self, number: np.ndarray) -> np.ndarray:
+        """Which particles are kept, of their numbers; splits may make so many that it is a smaller share."""
+        if self._share * len(number) > 2 * PARTICLES or not self.moments:
+            self._share = min(1.0, PARTICLES / len(number))
+        return (number * GOLDEN) % 1.0 < self._share
+
+    def _change(self, before: Moment, after: Moment) -> float:
+        passed = (after.time - before.time) / self._until
+        a, b = before.position, after.position
+        if not np.array_equal(before.number, after.number):
+            _, of_a, of_b = np.intersect1d(
+                before.number, after.number, assume_unique=True, return_indices=True
+            )
+            a, b = a[of_a], b[of_b]
+        moved = b - a
+        rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
+        # What diverges has no displacement: its moments stay, since a guard is about to stop the run.
+        return STANDSTILL * passed + (float(rms) / self._height if np.isfinite(rms) else 1.0)
+
+    def _drop_the_least(self) -> None:
+        around = np.array(self._changes[:-1]) + np.array(self._changes[1:])
+        least = int(np.argmin(around))
+        del self.moments[least + 1]
+        self._changes[least : least + 2] = [float(around[least])]
+
+
+def _owned(moment: Moment) -> Moment:
+    """The moment with arrays of its own: those of a state may be views of it."""
+    return replace(moment, **{name: getattr(moment, name).copy() for name in TYPES})

@@ -1,0 +1,180 @@
+"""The page of a study: its members in a table, their histories over each other, and error against cost."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import numpy as np
+import xarray
+
+from ..errors import CaseError
+from ..output.atomic import replacing
+from ..report.page.assembled import assembled
+from ..report.page.histories import listed
+from ..report.page.section import Section, charts, folded, note, paragraph
+from .chart import chart
+from .chart_figure import LEAST_ERROR
+from .figures import SHOWN, members
+from .quantities import COSTS
+from .table import COLUMNS, fate_of, shown_in_table
+
+NAME = "index.html"
+MOST_CURVES = 40
+"""Members whose histories are drawn; of more, evenly spread ones."""
+JUDGED = ("spread_diameter", "height", "kinetic_energy")
+"""Histories by which members are judged: the first that can be."""
+
+
+def write_page(dataset: xarray.Dataset, directory: Path) -> Path:
+    """Write the page of a study.
+
+    Args:
+        dataset: of ``collect``.
+        directory: of the study, which has the directories of the members.
+
+    Raises:
+        OutputError: where it cannot be written.
+    """
+    path = directory / NAME
+    sections = [
+        _overview(dataset),
+        _cost(dataset),
+        _histories(dataset),
+        _table(dataset, directory),
+        _made(dataset),
+    ]
+    page = assembled(
+        str(dataset.attrs["title"]),
+        str(dataset.attrs.get("description", "")),
+        [section for section in sections if section is not None],
+        f"Made by mpmkit {dataset.attrs.get('mpmkit', '')} from results.nc. It needs no network.",
+    )
+    with replacing(path) as partial:
+        partial.write_text(page, encoding="utf-8")
+    return path
+
+
+def _overview(dataset: xarray.Dataset) -> Section:
+    fates = [str(fate) for fate in dataset.fate.values.ravel()]
+    finished, waiting = fates.count("finished"), fates.count("")
+    said = f"{finished} of {len(fates)} members came to their end."
+    if waiting:
+        said += f" {waiting} have not run yet."
+    if stopped := len(fates) - finished - waiting:
+        said += f" {stopped} stopped before; the table says why."
+    varied = ", ".join(f"{name} ({dataset.sizes[name]})" for name in map(str, dataset.fate.dims))
+    return Section("overview", "Results", paragraph(said, "lead") + paragraph(f"Varied: {varied}."))
+
+
+def _cost(dataset: xarray.Dataset) -> Section | None:
+    """Error against cost of the members that finished; None where there are no two to compare."""
+    for variable in JUDGED:
+        try:
+            found = chart(dataset, variable)
+        except CaseError:
+            continue
+        points = sorted(found.points, key=lambda point: point.cost)
+        front = found.front
+        errors = np.array([max(point.error, LEAST_ERROR) for point in points])
+        best = np.array([point in front for point in points])
+        unit, words = COSTS[found.cost]
+        data = {
+            "title": f"Error of the {variable.replace('_', ' ')} against cost",
+            "unit": "",
+            "x": listed(np.array([point.cost for point in points])),
+            "xLabel": words,
+            "xUnit": unit,
+            "names": [point.title for point in points],
+            "curves": [
+                {"label": "cheapest for its error", "points": True, "values": _where(best, errors)},
+                {"label": "others", "points": True, "values": _where(~best, errors)},
+            ],
+            "logarithmic": True,
+        }
+        body = charts({"cost": f"Error of {variable} against cost"}) + note(
+            f"The error is the largest departure of the history from that of {found.against}, over its "
+            "largest value. Of the first kind no other member is both cheaper and closer."
+        )
+        return Section("cost", "Error against cost", body, {"charts": {"cost": data}})
+    return None
+
+
+def _where(chosen: np.ndarray, values: np.ndarray) -> list[float | None]:
+    return listed(np.where(chosen, values, np.nan))
+
+
+def _histories(dataset: xarray.Dataset) -> Section | None:
+    names = [name for name in SHOWN if name in dataset and bool(dataset[name].notnull().any())]
+    drawn = [(t, m) for t, m in members(dataset) if any(bool(m[name].notnull().any()) for name in names)]
+    if not drawn:
+        return None
+    every = -(-len(drawn) // MOST_CURVES)
+    found: dict[str, dict[str, Any]] = {}
+    for name in names:
+        label, scale = SHOWN[name]
+        title, _, unit = label.rpartition(" (")
+        curves = [{"label": t, "values": listed(m[name].values * scale)} for t, m in drawn[::every]]
+        found[name.replace("_", "-")] = {
+            "title": title.capitalize(),
+            "unit": unit.rstrip(")"),
+            "x": listed(dataset.time.values),
+            "xLabel": "time",
+            "xUnit": "s",
+            "curves": curves,
+        }
+    body = charts({name: f"{of['title']} of the members against time" for name, of in found.items()})
+    if every > 1:
+        body += note(f"The charts show one in {every} members; results.nc has all.")
+    return Section("histories", "Histories", body, {"charts": found})
+
+
+def _table(dataset: xarray.Dataset, directory: Path) -> Section:
+    """A row for each member, with a link to its directory."""
+    places = _directories(directory)
+    dimensions = [str(name) for name in dataset.fate.dims]
+    headings = [*dimensions, *(heading for _, heading, _, _ in COLUMNS), "how it ended"]
+    rows = ""
+    for title, member in members(dataset):
+        labels = [str(member[name].item()) for name in dimensions]
+        place = places.get(tuple(labels))
+        name = escape(labels[0])
+        first = (
+            name if place is None else f'<a href="{escape(quote(place))}" title="{escape(title)}">{name}</a>'
+        )
+        cells = [*map(escape, labels[1:])]
+        cells += [shown_in_table(float(member[key]), scale, form) for key, _, scale, form in COLUMNS]
+        cells.append(escape(fate_of(member)))
+        rows += f'<tr><th scope="row">{first}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
+    head = "".join(f'<th scope="col">{escape(heading)}</th>' for heading in headings)
+    body = (
+        '<div class="scroll" tabindex="0" role="region" aria-label="Members"><table>'
+        f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
+    )
+    return Section("members", "Members", body)
+
+
+def _directories(directory: Path) -> dict[tuple[str, ...], str]:
+    """Directories of the members, from that of the study, by their labels."""
+    from .members import shown
+
+    found = {}
+    for path in sorted(directory.glob("members/*/member.json")):
+        try:
+            labels = json.loads(path.read_text(encoding="utf-8"))["labels"]
+        except (OSError, ValueError, KeyError):
+            continue
+        found[tuple(shown(label) for label in labels.values())] = f"members/{path.parent.name}/"
+    return found
+
+
+def _made(dataset: xarray.Dataset) -> Section:
+    text = json.dumps(json.loads(dataset.attrs.get("study", "{}")), indent=2, ensure_ascii=False)
+    body = paragraph("To run the members that are missing, and draw all again:")
+    command = "mpmkit study DIRECTORY/study.json --out DIRECTORY"
+    body += f'<pre class="command" tabindex="0"><code>{command}</code></pre>'
+    body += folded("The whole study", f'<pre tabindex="0"><code>{escape(text)}</code></pre>')
+    return Section("repeat", "How the study was made", body)

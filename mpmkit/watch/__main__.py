@@ -1,0 +1,30 @@
+"""``python -m mpmkit.watch DIR [--resumed]``: serve the page of a run until the standard input ends.
+
+``mpmkit run --watch`` starts it. It prints the address of the page, and nothing else.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from contextlib import suppress
+from pathlib import Path
+
+from .server import Server
+
+
+def main() -> None:
+    """Serve until whoever started this closes the pipe, which the system does as well where it dies."""
+    with suppress(OSError, AttributeError):
+        os.nice(5)  # the run goes first; a lower priority would get no answer through on a busy machine
+    server = Server(Path(sys.argv[1]), resumed="--resumed" in sys.argv[2:])
+    print(server.address, flush=True)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    threading.Thread(target=server.pages.prepare, daemon=True).start()
+    sys.stdin.read()
+    server.end()
+    os._exit(0)  # a request that is being answered must not keep it
+
+
+main()

@@ -1,0 +1,64 @@
+"""The server as the run sees it: a process that is started before it and ends with it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+LINGER = 5.0
+"""Seconds that a browser has, once the run is done, to fetch the last page."""
+
+
+class Watch:
+    """A context manager that serves the page of a run directory.
+
+    Args:
+        directory: of the run.
+        resumed: whether what is in the directory now is of this run.
+        tell: called with the address, once there is one; from another thread.
+    """
+
+    def __init__(self, directory: Path, resumed: bool, tell: Callable[[str], None]) -> None:
+        self._command = [sys.executable, "-m", "mpmkit.watch", str(directory)]
+        self._command += ["--resumed"] if resumed else []
+        self._tell = tell
+        self._process: subprocess.Popen[str] | None = None
+
+    def __enter__(self) -> Watch:
+        # A group of its own: Ctrl-C is for the run, which then ends this process in its own time. Not a
+        # session of its own: Linux would give it the share of a run, whatever its priority.
+        self._process = subprocess.Popen(
+            self._command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            **({"process_group": 0} if os.name == "posix" else {}),
+        )
+        threading.Thread(target=self._pass_on, args=(self._process,), daemon=True).start()
+        return self
+
+    def _pass_on(self, process: subprocess.Popen[str]) -> None:
+        assert process.stdout is not None
+        with suppress(OSError, ValueError):  # the run has ended meanwhile
+            for line in process.stdout:
+                self._tell(line.strip())
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        process = self._process
+        assert process is not None
+        assert process.stdin is not None
+        with suppress(OSError):
+            process.stdin.close()  # by which it knows that the run has ended
+        try:
+            if kind is None:
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(LINGER)
+        finally:
+            process.kill()
+            process.wait()

@@ -1,0 +1,122 @@
+"""What a run has written so far."""
+
+from __future__ import annotations
+
+import json
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..output import RunDirectory
+
+MOST_ROWS = 1000
+"""Of a history that is sent: a screen has no more columns."""
+NOTHING = "nothing yet"
+"""Version of a run that has not written a row."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """A scalar of the history."""
+
+    label: str
+    unit: str
+    values: list[float | None]
+
+
+class SoFar:
+    """The history of a run at work, read when it has changed.
+
+    Args:
+        directory: of the run.
+        resumed: whether a history that is there now is of this run, and not of one that it replaces.
+    """
+
+    def __init__(self, directory: Path, resumed: bool) -> None:
+        self.run = RunDirectory(directory)
+        self._of_another = NOTHING if resumed else self._written()
+        self._lock = threading.Lock()
+        self._read = (NOTHING, self._empty())
+
+    def version(self) -> str:
+        """Another text whenever the run has written something that its page shows."""
+        written = self._written()
+        if written in (NOTHING, self._of_another):
+            return NOTHING
+        return f"{written} {_stamp(self.run.flow)} {_stamp(self.run.summary)}"
+
+    def time(self) -> float | None:
+        """Simulated time of the last row, s; None before there is one."""
+        time = self.history()["time"]
+        return time[-1] if time else None
+
+    def history(self) -> dict[str, Any]:
+        """``version``, ``name``, ``until`` (s), ``time`` (s) and ``series`` by name."""
+        with self._lock:
+            version = self.version()
+            if version != self._read[0]:
+                self._read = (version, self._empty() if version == NOTHING else self._load(version))
+            return self._read[1]
+
+    def _written(self) -> str:
+        return _stamp(self.run.history) or NOTHING
+
+    def _empty(self) -> dict[str, Any]:
+        return {
+            "version": NOTHING,
+            "name": self.run.path.resolve().name,
+            "until": None,
+            "time": [],
+            "series": {},
+        }
+
+    def _load(self, version: str) -> dict[str, Any]:
+        """Read the history; where it is being replaced at this very moment, the next look finds it."""
+        try:
+            time, series = _scalars(self.run.history)
+            case = json.loads(self.run.case.read_text(encoding="utf-8"))
+        except (OSError, ValueError, RuntimeError):
+            return self._empty()
+        return {
+            "version": version,
+            "name": str(case.get("name", self.run.path.name)),
+            "until": case.get("until"),
+            "time": time,
+            "series": {name: vars(one) for name, one in series.items()},
+        }
+
+
+def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
+    """Times, s, and the scalars of a history by name; fields of particles, which may be large, are not read.
+
+    Raises:
+        OSError, RuntimeError: there is none at the path, or a part of one.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        count = file.dimensions["time"].size
+        rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(int)) if count else []
+        found = {
+            name: Series(one.long_name, one.units, _listed(np.ma.filled(one[:], np.nan)[rows]))
+            for name, one in file.variables.items()
+            if one.dimensions == ("time",)
+        }
+    return found.pop("time").values, found
+
+
+def _stamp(path: Path) -> str:
+    """Another text whenever a file is another one; empty where there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ""
+    return f"{found.st_mtime_ns}-{found.st_ino}"
+
+
+def _listed(values: np.ndarray) -> list[float | None]:
+    """Numbers as JSON has them; None for what is not finite."""
+    return [float(value) if np.isfinite(value) else None for value in values]
