@@ -28,6 +28,22 @@ MARK = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"docs/images/[\w/*.]+\.png")
 FILE = re.compile(r"`((?:mpmkit|plugins|tests|docs|cases|benchmarks)/[\w/.-]+\.\w+)`")
+TEST = re.compile(r"`(test_\w+\.py)`")
+RIDDLES = (
+    "unless told",
+    "told of",
+    "hears of",
+    "hear of",
+    "numbers that are none",
+    "what a scene needs",
+    "say the same",
+    "said the same",
+    "can hardly be meant",
+    "made one's own",
+    "no more of it than",
+    "as may be",
+)
+"""Phrases that a reader must read twice; the field's words say the same thing at once."""
 ROUNDED = 0.6
 """Of the last digit given: by how much a number may be off that is said rounded."""
 README_NUMBERS = re.compile(
@@ -76,6 +92,19 @@ def files_that_are_not_there() -> Iterator[str]:
         for name in FILE.findall(page.read_text(encoding="utf-8")):
             if not (ROOT / name).exists():
                 yield f"{_named(page)}: there is no file '{name}'"
+        for name in TEST.findall(page.read_text(encoding="utf-8")):
+            if not list(ROOT.glob(f"tests/**/{name}")):
+                yield f"{_named(page)}: there is no test file '{name}'"
+
+
+def riddles() -> Iterator[str]:
+    """Phrases that few understand, on the pages and in messages and docstrings of the program."""
+    for path in tracked("README.md", "CONTRIBUTING.md", "docs/*.md", "mpmkit/*.py", "plugins/*.py"):
+        text = path.read_text(encoding="utf-8")
+        plain = re.sub(r"\s+", " ", text).lower()
+        for phrase in RIDDLES:
+            if re.search(rf"\b{phrase}\b", plain):
+                yield f"{_named(path)}: '{phrase}' is hard to understand; say it in plain words"
 
 
 def anchors(page: Path) -> set[str]:
@@ -196,7 +225,7 @@ def main() -> None:
     parser.add_argument("--run", type=Path, metavar="DIR", help="run directory of cases/slump.json")
     chosen = parser.parse_args()
     wrong = [*merge_marks(), *dead_links(), *files_that_are_not_there(), *figures_without_a_source()]
-    wrong += cases_that_the_gallery_lacks()
+    wrong += [*cases_that_the_gallery_lacks(), *riddles()]
     if chosen.scripts:
         wrong += scripts_without_help()
     if chosen.run is not None:

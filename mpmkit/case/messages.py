@@ -50,7 +50,7 @@ def explain(
     schema = _schema(model)
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
-    # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
+    # A misspelt key is also missing under its right name: one message is enough.
     true_names = {
         (*c.path[:-1], nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys()))
         for c in unknown[:MOST_EXAMINED]

@@ -20,7 +20,7 @@ LOGGER = logging.getLogger("mpmkit")
 FRACTURED = 0.05
 """Part of the volume drawn apart that is worth a warning."""
 CREATED = 0.02
-"""Energy of solids that came from nowhere, over what there was, that is worth a warning."""
+"""Created energy of solids, relative to the available energy, above which a warning is given."""
 
 
 def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:

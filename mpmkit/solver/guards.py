@@ -76,8 +76,8 @@ class Guards:
     def check(self) -> None:
         """Raise GuardStop where the run is beyond saving.
 
-        That is: a particle is unsound, mass got lost, energy came from nowhere, or places and volumes of the
-        particles no longer say the same.
+        That is: a particle is unsound, mass is missing, energy was created, or positions and volumes of the
+        particles contradict each other.
 
         Raises:
             PluginFault: mass got lost because a shape function's weights do not sum to one.
