@@ -10,16 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .case import Case, load_case, parse_case
+    from .fitting import fit
     from .running.runner import run
     from .solver.simulation import Simulation
     from .version import __version__
 
-__all__ = ["Case", "Simulation", "__version__", "load_case", "parse_case", "run"]
+__all__ = ["Case", "Simulation", "__version__", "fit", "load_case", "parse_case", "run"]
 
 _HOME = {
     "Case": "mpmkit.case",
     "load_case": "mpmkit.case",
     "parse_case": "mpmkit.case",
+    "fit": "mpmkit.fitting",
     "run": "mpmkit.running.runner",
     "Simulation": "mpmkit.solver.simulation",
     "__version__": "mpmkit.version",

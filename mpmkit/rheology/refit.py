@@ -63,17 +63,18 @@ def _refitted(
     ]
 
 
-def flow_curve(law: Any) -> np.ndarray | None:
-    """Stress, Pa, in simple shear at ``RATES``; None of a law that is no fluid of the short contracts."""
+def flow_curve(law: Any, rates: np.ndarray = RATES) -> np.ndarray | None:
+    """Stress, Pa, in simple shear at ``rates``, 1/s; None of a law that is no fluid of the short "
+    "contracts."""
     if isinstance(law, GeneralisedNewtonianLaw):
-        viscosity = law.apparent_viscosity(RATES.copy())
-        require_array(law, "apparent_viscosity", viscosity, RATES.shape)
-        return viscosity * RATES
+        viscosity = law.apparent_viscosity(rates.copy())
+        require_array(law, "apparent_viscosity", viscosity, rates.shape)
+        return viscosity * rates
     if isinstance(law, ElastoviscoplasticLaw):
-        stress = law.flow_curve(RATES.copy())
+        stress = law.flow_curve(rates.copy())
         if np.ndim(stress) == 0:  # a constant will do
-            return np.full(RATES.shape, require_number(law, "flow_curve", stress))
-        require_array(law, "flow_curve", stress, RATES.shape)
+            return np.full(rates.shape, require_number(law, "flow_curve", stress))
+        require_array(law, "flow_curve", stress, rates.shape)
         return stress
     return None
 
