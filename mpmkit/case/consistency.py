@@ -15,6 +15,7 @@ from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
+from .measurement_rules import check_measurements
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .state_variables import state_variables
@@ -58,6 +59,7 @@ def check(case: Case) -> None:
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.until)
     _check_particle_history(case)
+    check_measurements(case)
 
 
 def _check_particle_history(case: Case) -> None:

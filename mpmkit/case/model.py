@@ -24,6 +24,7 @@ from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
 from .faces import Face
+from .measurements import Measurement
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
@@ -196,6 +197,11 @@ class Case(Model):
     )
     scheme: Scheme
     output: OutputSettings = OutputSettings()
+    measurements: dict[str, Measurement] = Field(
+        default={},
+        description="what the apparatus reports: variables of the history, last values in the summary",
+        json_schema_extra={"propertyNames": {"pattern": "^[a-z][a-z0-9_]*$"}},
+    )
 
     @property
     def space_(self) -> Space:

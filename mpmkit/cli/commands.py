@@ -14,8 +14,10 @@ import click
 from ..errors import MpmkitError, OutputError
 from . import (
     bench,
+    cases,
     chart,
     compare,
+    init,
     new_plugin,
     options,
     plan,
@@ -87,6 +89,8 @@ def commands(context: click.Context) -> None:
 
 
 for module in (
+    cases,
+    init,
     run,
     rerun,
     report,

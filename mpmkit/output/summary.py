@@ -57,6 +57,7 @@ def summarise(
     stopped_because: str,
     plugins: Any,
     t500_from_lift: float | None = None,
+    measured: Mapping[str, str] = {},
 ) -> dict[str, Any]:
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
@@ -75,6 +76,7 @@ def summarise(
         stopped_because: why the run ended.
         plugins: the plug-ins and their versions.
         t500_from_lift: time from the start of the lift of a mould to a spread of 500 mm, s.
+        measured: unit of what the case measures, by the name of the variable.
     """
     arrived = trusted_to_the_end(stopped_because)
     return {
@@ -92,13 +94,14 @@ def summarise(
         "particle_steps_per_second": particle_steps / wall_time if wall_time > 0 else None,
         "stopped_because": stopped_because,
         "plugins": plugins,
-        "units": UNITS,
+        **{name: _last(history, name) if arrived else None for name in measured},
+        "units": {**UNITS, **measured},
     }
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
     """The numbers of a summary by name, as attributes of a dataset; what never happened is not a number."""
-    return {name: math.nan if summary[name] is None else summary[name] for name in UNITS}
+    return {name: math.nan if summary[name] is None else summary[name] for name in summary["units"]}
 
 
 def lifted_later(summary: Mapping[str, Any]) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
-from ..output.summary import UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
+from ..output.summary import lifted_later, numbers, state_at_end, trusted_to_the_end
 from ..solver import density_watch
 from ..solver.simulation import Simulation
 from .lift import from_lift, lift_start
@@ -78,6 +78,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
         wall_time=wall_time,
         stopped_because=ended,
         plugins=plugins_used(simulation.case),
+        measured={name: measurement.unit for name, measurement in simulation.case.measurements.items()},
     )
     attributes |= numbers(summary)
     state = state_at_end(summary)
@@ -87,7 +88,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
     )  # fmt: skip
     found = [
         f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
-        for name, unit in UNITS.items()
+        for name, unit in summary["units"].items()
         if summary[name] is not None and (name != "t500_from_lift" or lifted_later(summary))
     ]
     RECORD.info("results: %s", ", ".join(found))

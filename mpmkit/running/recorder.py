@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from ..case.model import Case
 from ..case.output import FRAMES, ROWS
 from ..case.state_variables import state_variables
 from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory, Variable
 from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .measuring import measurements
 from .milestones import Milestones
 from .schedule import Schedule
 from .wall_frames import WallFrames
@@ -48,6 +50,11 @@ def wall_columns(axes: tuple[str, ...]) -> tuple[Variable, ...]:
     )
 
 
+def measurement_columns(case: Case) -> tuple[Variable, ...]:
+    """The columns of what a case measures."""
+    return tuple(Variable(name, m.unit, m.description) for name, m in case.measurements.items())
+
+
 class Recorder:
     """Adds to the history of a simulation, and to its frames if it has a run directory.
 
@@ -74,7 +81,7 @@ class Recorder:
         self.directory = directory
         variables = PARTICLE_VARIABLES | state_variables(case)
         axes, walls = case.space_.axes, simulation.wall_names
-        columns = COLUMNS + (wall_columns(axes) if walls else ())
+        columns = COLUMNS + (wall_columns(axes) if walls else ()) + measurement_columns(case)
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
@@ -139,6 +146,7 @@ class Recorder:
         }
         if simulation.wall_names:
             values |= self._wall_means()
+        values |= measurements(simulation, values)
         kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
