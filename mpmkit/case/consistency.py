@@ -18,6 +18,7 @@ from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
 from .diagnostics import diagnostic_columns
 from .ending import Until
+from .measurement_rules import check_measurements
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .state_variables import TAKEN, former_names, state_variables
@@ -62,6 +63,7 @@ def check(case: Case) -> None:
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
+    check_measurements(case)
 
 
 def _check_measured(case: Case) -> None:

@@ -21,6 +21,7 @@ from .messages import explain
 from .model import Case
 from .near_files import near_file
 from .overrides import apply_overrides
+from .parameters import expand, refuse_unused
 from .strict_json import NESTED, decode, require_finite
 
 LARGEST = 100_000_000
@@ -57,7 +58,8 @@ def parse_case(
     model = case_model(registry)
     try:
         require_finite(data)  # of Python's, that is: a file has been through this
-        data = apply_overrides(data, overrides)
+        refuse_unused(data, source)
+        data = expand(apply_overrides(data, overrides), source)
         data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
         text = json.dumps(data, allow_nan=False)
         with blaming_plugins(registry.all()):

@@ -25,6 +25,7 @@ from ..spaces import SPACES, Space
 from .base import Model
 from .ending import AnyUntil, latest
 from .faces import Face
+from .measurements import Measurement
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
@@ -210,6 +211,11 @@ class Case(Model):
     )
     scheme: Scheme = Field(description="the numerical method")
     output: OutputSettings = Field(default=OutputSettings(), description="what is written, and when")
+    measurements: dict[str, Measurement] = Field(
+        default={},
+        description="what the apparatus reports: variables of the history, last values in the summary",
+        json_schema_extra={"propertyNames": {"pattern": "^[a-z][a-z0-9_]*$"}},
+    )
 
     @property
     def space_(self) -> Space:

@@ -63,7 +63,7 @@ def assign(data: dict[str, Any], path: str, value: Any) -> None:
     for depth, key in enumerate(keys):
         index = _index(here, key, ".".join(keys[:depth]))
         if depth == len(keys) - 1:
-            here[index] = value
+            here[index] = _in_its_entry(here, index, keys, value)
             return
         below = here[index] if isinstance(here, list) else here.get(index)
         if below is None:
@@ -71,6 +71,14 @@ def assign(data: dict[str, Any], path: str, value: Any) -> None:
         elif isinstance(below, str) and (named_by := _plugin_key(keys[: depth + 1])) is not None:
             below = here[index] = {named_by: below}
         here = below
+
+
+def _in_its_entry(here: Any, index: Any, keys: list[str], value: Any) -> Any:
+    """A parameter with another value, where only that is given; else the value as it is."""
+    entry = here.get(index) if isinstance(here, dict) else None
+    if keys[0] == "parameters" and len(keys) == 2 and isinstance(entry, dict) and not isinstance(value, dict):
+        return entry | {"value": value}
+    return value
 
 
 def _plugin_key(path: list[str]) -> str | None:

@@ -14,11 +14,13 @@ import click
 from ..errors import MpmkitError, OutputError
 from . import (
     bench,
+    cases,
     chart,
     compare,
     completion,
     doctor,
     fit,
+    init,
     movie,
     new_plugin,
     options,
@@ -91,6 +93,8 @@ def commands(context: click.Context) -> None:
 
 
 for module in (
+    cases,
+    init,
     run,
     rerun,
     report,

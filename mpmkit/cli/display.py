@@ -17,7 +17,7 @@ from rich.table import Column
 from rich.text import Text
 
 from ..output.log import RECORD
-from ..output.summary import lifted_later, state_at_end
+from ..output.summary import UNITS, lifted_later, state_at_end
 from .duration import duration
 from .printing import echo
 
@@ -207,4 +207,8 @@ def show_summary(directory: Path) -> None:
         if key == "final_spread" and (state := state_at_end(summary)) is not None:
             figure += f", {state}"
         echo(f"{label:<{width}}  {figure}")
+    for name in [name for name in summary["units"] if name not in UNITS]:
+        unit = summary["units"][name].removeprefix("1")
+        value = summary[name]
+        echo(f"{name:<{width}}  {'–' if value is None else f'{value:.4g} {unit}'.rstrip()}")
     echo(f"results in {directory}")

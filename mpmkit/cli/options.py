@@ -22,6 +22,7 @@ threads = click.option(
 )
 quiet = click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
+overwrite_file = click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; default: runs/<case name>.")
 study_out = click.option(
     "--out", type=PATH, metavar="DIR", help="The study's directory; default: runs/<study name>."

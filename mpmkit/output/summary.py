@@ -61,6 +61,7 @@ def summarise(
     plugins: Any,
     t500_from_lift: float | None = None,
     ended_by: str | None = None,
+    measured: Mapping[str, str] = {},
 ) -> dict[str, Any]:
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
@@ -80,6 +81,7 @@ def summarise(
         ended_by: the condition of the case that ended it, as a sentence.
         plugins: the plug-ins and their versions.
         t500_from_lift: time from the start of the lift of a mould to a spread of 500 mm, s.
+        measured: unit of what the case measures, by the name of the variable.
     """
     arrived = trusted_to_the_end(stopped_because)
     return {
@@ -98,13 +100,14 @@ def summarise(
         "stopped_because": stopped_because,
         "ended_by": ended_by,
         "plugins": plugins,
-        "units": UNITS,
+        **{name: _last(history, name) if arrived else None for name in measured},
+        "units": {**UNITS, **measured},
     }
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
     """The numbers of a summary by name, as attributes of a dataset; what never happened is not a number."""
-    return {name: math.nan if summary[name] is None else summary[name] for name in UNITS}
+    return {name: math.nan if summary[name] is None else summary[name] for name in summary["units"]}
 
 
 def lifted_later(summary: Mapping[str, Any]) -> bool:

@@ -9,7 +9,7 @@ from ..case.ending import conditions, latest
 from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
-from ..output.summary import FINISHED, UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
+from ..output.summary import FINISHED, lifted_later, numbers, state_at_end, trusted_to_the_end
 from ..solver import density_watch
 from ..solver.simulation import Simulation
 from .lift import from_lift, lift_start
@@ -82,6 +82,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
         stopped_because=ended,
         ended_by=recorder.ending.why or None,
         plugins=plugins_used(simulation.case),
+        measured={name: measurement.unit for name, measurement in simulation.case.measurements.items()},
     )
     attributes |= numbers(summary)
     said = [sentence for sentence in (summary["ended_by"], state_at_end(summary)) if sentence is not None]
@@ -97,7 +98,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
         )  # fmt: skip
     found = [
         f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
-        for name, unit in UNITS.items()
+        for name, unit in summary["units"].items()
         if summary[name] is not None and (name != "t500_from_lift" or lifted_later(summary))
     ]
     RECORD.info("results: %s", ", ".join(found))

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from ..case.diagnostics import diagnostic_columns
+from ..case.model import Case
 from ..case.output import FRAMES, ROWS
 from ..case.state_variables import particle_variables
-from ..output import FrameWriter, History, RunDirectory
+from ..output import FrameWriter, History, RunDirectory, Variable
 from ..output.columns import COLUMNS, wall_columns
 from ..output.flow import arrays_of, write_flow
 from ..solver.particle_fields import frame_fields, history_fields
@@ -17,9 +18,15 @@ from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .ending import Ending
 from .flow_record import LOOKS, FlowRecord
+from .measuring import measurements
 from .milestones import Milestones
 from .schedule import Schedule
 from .wall_frames import WallFrames
+
+
+def measurement_columns(case: Case) -> tuple[Variable, ...]:
+    """The columns of what a case measures."""
+    return tuple(Variable(name, m.unit, m.description) for name, m in case.measurements.items())
 
 
 class Recorder:
@@ -48,7 +55,12 @@ class Recorder:
         self.directory = directory
         variables = particle_variables(case)
         axes, walls = case.space_.axes, simulation.wall_names
-        columns = (*COLUMNS, *diagnostic_columns(case), *(wall_columns(axes) if walls else ()))
+        columns = (
+            *COLUMNS,
+            *diagnostic_columns(case),
+            *measurement_columns(case),
+            *(wall_columns(axes) if walls else ()),
+        )
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
@@ -129,6 +141,7 @@ class Recorder:
         values = simulation.measured()
         if simulation.wall_names:
             values |= self._wall_means()
+        values |= measurements(simulation, values)
         with simulation.blaming:
             kept = history_fields(simulation)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}

@@ -15,6 +15,7 @@ from ..case import parse_case
 from ..case.load import read_case
 from ..case.model import Case
 from ..case.overrides import assign
+from ..case.parameters import BLOCK, expand, refuse_unused
 from ..case.resolved import resolved
 from ..errors import CaseError
 from ..registry import installed
@@ -105,7 +106,8 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
     changes = _outermost_first(common) | _outermost_first(own)
     title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
     try:
-        data, remarks = laws_made_over(base, changes)
+        data, changes = _with_parameters(base, changes)
+        data, remarks = laws_made_over(data, changes)
         for path, value in changes.items():
             assign(data, path, value)
         case = parse_case(data, source="its case")
@@ -117,6 +119,16 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
 def _outermost_first(changes: Changes) -> Changes:
     """Changes in an order in which none undoes another: a part of a place comes after the place."""
     return dict(sorted(changes.items(), key=lambda change: change[0].count(".")))
+
+
+def _with_parameters(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], Changes]:
+    """The case in numbers, and the changes that are not of its parameters: a new law is fitted to numbers."""
+    data = copy.deepcopy(base)
+    refuse_unused(data, "its case")
+    own = {path: value for path, value in changes.items() if path.partition(".")[0] == BLOCK}
+    for path, value in own.items():
+        assign(data, path, value)
+    return expand(data, "its case"), {path: value for path, value in changes.items() if path not in own}
 
 
 def laws_made_over(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:

@@ -1,0 +1,42 @@
+"""The cases that ship with mpmkit: the folder ``cases`` of a checkout, which a wheel holds as well."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from ..errors import CaseError
+from .allowed import shown
+from .synonyms import nearest
+
+LABORATORY = "lab"
+"""The folder in it of apparatus of the laboratory."""
+
+
+@cache
+def shipped() -> dict[str, Path]:
+    """Their files by name: first the apparatus of the laboratory, then the others.
+
+    Raises:
+        CaseError: they are not there, as in an installation that was taken apart.
+    """
+    package = Path(__file__).parents[1]
+    for folder in (package / "cases", package.parent / "cases"):
+        laboratory = sorted((folder / LABORATORY).glob("*.json"))
+        if laboratory:
+            return {path.stem: path for path in [*laboratory, *sorted(folder.glob("*.json"))]}
+    raise CaseError(f"the cases that ship are not in {package / 'cases'}: install mpmkit again")
+
+
+def shipped_case(name: str) -> Path:
+    """The file of a shipped case.
+
+    Raises:
+        CaseError: none has this name.
+    """
+    found = shipped()
+    if name not in found:
+        near = nearest(name, list(found))
+        meant = "" if near is None else f"; did you mean '{near}'?"
+        raise CaseError(f"there is no shipped case {shown(name)}{meant} mpmkit cases lists them")
+    return found[name]

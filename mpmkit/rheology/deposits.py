@@ -1,0 +1,159 @@
+"""Shapes in which a yield-stress fluid comes to rest after a slow flow in a thin layer, on a floor that it
+sticks to.
+
+With s = τ0/(ρ g), the balance of a slice of depth h is, where the flow came from lubrication,
+
+    h dh/dx = -s                                                    (1)
+
+The next order takes into account that the layer is at yield while it is stretched along the flow, too: the
+shear stress falls linearly from τ0 at the floor to 0 at the surface, and what is left of the yield stress
+pulls back with a force of c s/2 times ρ g h on a section:
+
+    h² - c s h = 2 s (R - r),    ending at the front with the depth c s   (2)
+
+c is π for a layer that widens along x only (plane strain), and √3 π/2 for one that widens alike in all
+directions. A spreading cone is between the two. See Dubash, Balmforth, Slim & Cochard 2009, J. Non-Newtonian
+Fluid Mech. 158, for such a correction. (1) is c = 0, too long by terms of the order of depth over
+length.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+PLANE = math.pi
+"""c of a layer that widens along one direction."""
+BIAXIAL = math.sqrt(3) * math.pi / 2
+"""c of a layer that widens alike along both."""
+STEPS = 2000
+
+
+def cone_spread(volume: float, sink: float, stretching: float = 0.0) -> float:
+    """Diameter, m, of the round deposit of a volume, m³.
+
+    For c = 0: R = (225 V² s⁻¹/(128 π²))^(1/5), Roussel & Coussot 2005, J. Rheol. 49.
+
+    Args:
+        volume: m³.
+        sink: s, m.
+        stretching: c of equation (2).
+    """
+
+    def found(top: float) -> tuple[float, float]:
+        radius = _behind(top, sink, stretching)
+        return radius, _integral(
+            lambda h: 2 * math.pi * (radius - _behind(h, sink, stretching)) * h * _slope(h, sink, stretching),
+            stretching * sink,
+            top,
+        )
+
+    return 2 * _solve(found, volume, sink, stretching)
+
+
+def channel_length(volume: float, sink: float, width: float = math.inf, stretching: float = 0.0) -> float:
+    """Length, m, of the deposit behind whose end wall a volume was poured, in a channel with sticking walls.
+
+    The walls at the sides hold with τ0 as the floor does: s becomes s (1 + 2h/b). With c = 0 this is the
+    balance of the LCPC box (Roussel 2007, Cem. Concr. Res. 37).
+
+    Args:
+        volume: m³, or m² for a channel without side walls.
+        sink: s, m.
+        width: b, m; the volume is that of a slice of 1 m where it is infinite.
+        stretching: c of equation (2).
+    """
+    across = 1.0 if math.isinf(width) else width
+
+    def found(top: float) -> tuple[float, float]:
+        def slope(h: float) -> float:
+            return _slope(h, sink, stretching) / (1 + 2 * h / width)
+
+        start = stretching * sink
+        return _integral(slope, start, top), across * _integral(lambda h: h * slope(h), start, top)
+
+    return _solve(found, volume, sink, stretching)
+
+
+def box_depths(
+    area: float, length: float, sink: float, width: float = math.inf, stretching: float = 0.0
+) -> tuple[float, float]:
+    """Depths, m, at the back and at the end of a closed channel that material has filled to its end.
+
+    Args:
+        area: m², volume over the width of the channel.
+        length: m, of the channel.
+        sink, width, stretching: as of ``channel_length``.
+    """
+
+    def depths(end: float) -> tuple[float, float]:
+        """Depth at the back, and area, for a depth at the end."""
+        h, step, filled = end, length / STEPS, 0.0
+        for _ in range(STEPS):
+            middle = h + step / 2 / (_slope(h, sink, stretching) / (1 + 2 * h / width))
+            following = h + step / (_slope(middle, sink, stretching) / (1 + 2 * middle / width))
+            filled += (h + following) / 2 * step
+            h = following
+        return h, filled
+
+    least = stretching * sink / 2 + 1e-4 * math.sqrt(sink * length)
+    end = _bisect(lambda h: depths(h)[1] - area, least, area / length)
+    return depths(end)[0], end
+
+
+def slope_length(area: float, sink: float, angle: float, stretching: float = 0.0) -> float:
+    """Length, m, of the plane deposit on a slope below a wall at its upper end.
+
+    dh/dx = (sin θ - s/h)/(cos θ - c s/(2h)), equation (2) with the weight along the slope; with c = 0 the
+    front is x tan θ = -h - h_c ln(1 - h/h_c), h_c = s/sin θ (Coussot, Proust & Ancey 1996).
+
+    Args:
+        area: m².
+        sink: s, m.
+        angle: θ, rad.
+        stretching: c.
+    """
+    critical = sink / math.sin(angle)
+
+    def found(top: float) -> tuple[float, float]:
+        def slope(h: float) -> float:
+            return (h * math.cos(angle) - stretching * sink / 2) / (sink - h * math.sin(angle))
+
+        start = min(stretching * sink / math.cos(angle), 0.999 * critical)
+        return _integral(slope, start, top), _integral(lambda h: h * slope(h), start, top)
+
+    high = critical * (1 - 1e-9)
+    if found(high)[1] < area:
+        raise ValueError("the volume is more than what comes to rest on the slope")
+    top = _bisect(lambda h: found(h)[1] - area, 1e-6 * critical, high)
+    return found(top)[0]
+
+
+def _behind(h: float, sink: float, c: float) -> float:
+    """How far behind the front the depth is h, m."""
+    return (h * h - c * sink * h) / (2 * sink)
+
+
+def _slope(h: float, sink: float, c: float) -> float:
+    """-dr/dh."""
+    return (2 * h - c * sink) / (2 * sink)
+
+
+def _integral(f: Callable[[float], float], low: float, high: float) -> float:
+    step = (high - low) / STEPS
+    return step * sum(f(low + (k + 0.5) * step) for k in range(STEPS))
+
+
+def _solve(found: Callable[[float], tuple[float, float]], volume: float, sink: float, c: float) -> float:
+    """The length of the deposit that holds a volume; ``found`` gives both for the depth at its top."""
+    low, high = c * sink * (1 + 1e-9) + 1e-12, 1.0
+    while found(high)[1] < volume:
+        high *= 2
+    return found(_bisect(lambda top: found(top)[1] - volume, low, high))[0]
+
+
+def _bisect(f: Callable[[float], float], low: float, high: float) -> float:
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if f(middle) > 0 else (middle, high)
+    return (low + high) / 2

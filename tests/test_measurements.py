@@ -1,0 +1,109 @@
+"""What a case measures: in the history, in the summary, and the sentences for what cannot be measured."""
+
+import json
+
+import numpy as np
+import pytest
+
+import mpmkit
+from mpmkit.case.measurements import NAMES, TAKEN
+from mpmkit.errors import CaseError
+from mpmkit.running.recorder import COLUMNS, wall_columns
+
+MATERIAL = {
+    "law": "bingham-evp",
+    "density": 2000,
+    "yield_stress": 1e4,
+    "plastic_viscosity": 10,
+    "sound_speed": 20,
+}
+
+
+def case(space="plane-strain", **measurements):
+    """A block 0.1 m wide and 0.05 m high that stands on a floor."""
+    axes = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}[space]
+    upper = [0.1, 0.05] if len(axes) == 2 else [0.1, 0.04, 0.05]
+    return {
+        "space": space,
+        "until": 0.02,
+        "grid": {
+            "cell_size": 0.01,
+            "domain": {axis: [0, 0.04 if axis == "y" else 0.2] for axis in axes},
+            "faces": {"z_min": "stick"},
+        },
+        "bodies": [
+            {"shape": {"kind": "box", "lower": [0] * len(axes), "upper": upper}
+             if space != "axisymmetric" else {"kind": "cylinder", "radius": 0.1, "height": 0.05},
+             "material": MATERIAL}
+        ],
+        "output": {"report": False, "history_interval": 0.01},
+        "measurements": {
+            name: {"formula": formula, "unit": unit, "description": name}
+            for name, (formula, unit) in measurements.items()
+        },
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("space", ["plane-strain", "axisymmetric", "3d"])
+def test_depths_and_the_front_of_a_block_are_its_own(space):
+    history = mpmkit.run(
+        mpmkit.parse_case(
+            case(space, inside=("depth(0.05)", "m"), end=("depth(0)", "m"), edge=("depth(0.1)", "m"),
+                 beyond=("depth(0.15)", "m"), tip=("front()", "m"), ratio=("inside / end", "1"))
+        )
+    )  # fmt: skip
+    first = history.isel(time=0)
+    if space == "axisymmetric":  # its lattice has boxes of equal sides in r, not of equal volumes
+        assert float(first["inside"]) == pytest.approx(0.05, rel=0.02)
+    else:
+        assert float(first["inside"]) == pytest.approx(0.05, rel=1e-12)
+        assert float(first["end"]) == pytest.approx(0.05, rel=1e-12)
+        assert float(first["edge"]) == pytest.approx(0.025, rel=1e-12)  # the strip is half empty
+    assert float(first["beyond"]) == 0.0
+    assert float(first["tip"]) == pytest.approx(0.1, rel=1e-12)
+    assert history["ratio"].attrs["units"] == "1"
+
+
+def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
+    measured = case(weight=("force('z_min', 'z') / 9.81", "kg"), nothing=("1 / depth(0.15)", "1/m"))
+    history = mpmkit.run(mpmkit.parse_case(measured), tmp_path / "run")
+    summary = json.loads((tmp_path / "run/summary.json").read_text())
+    assert summary["units"]["weight"] == "kg"
+    assert summary["weight"] == float(history["weight"].values[-1])
+    force = history["wall_force"].sel(wall="z_min", component="z").values
+    np.testing.assert_array_equal(history["weight"].values, force / 9.81)
+    assert summary["nothing"] is None
+    assert np.isnan(history["nothing"].values).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "formula", "words"),
+    [
+        ("tip", "front(1)", "front takes nothing"),
+        ("tip", "depth(0.3)", "depth takes one place along x, from 0 to 0.2 m"),
+        ("tip", "depth('x')", "a name in quotes stands where a number must"),
+        ("push", "force('lid', 'z')", "force takes the name of a wall ('z_min') and an axis ('x', 'z')"),
+        ("push", "torque('lid')", "torque takes the name of a wall ('z_min')"),
+        ("tip", "hight", "there is no 'hight'; did you mean 'height'?"),
+        ("height", "front()", "measurements has one called 'height'"),
+        ("t500", "front()", "measurements has one called 't500'"),
+        ("Tip", "front()", "measurements has one called 'Tip'"),
+        ("tip", "front(", "this is no formula"),
+    ],
+)
+def test_a_sentence_says_what_cannot_be_measured(name, formula, words):
+    with pytest.raises(CaseError) as refused:
+        mpmkit.parse_case(case(**{name: (formula, "m")}))
+    assert words in str(refused.value)
+
+
+def test_no_measurement_can_have_the_name_of_a_variable_of_the_history():
+    names = {column.name for column in (*COLUMNS, *wall_columns(("x", "z")))}
+    assert names | {"time"} <= {*NAMES, *TAKEN}
+
+
+def test_a_parameter_stands_in_the_formula_of_a_measurement():
+    data = case(settled=("start - height", "m"))
+    data["parameters"] = {"start": {"value": 0.05, "unit": "m", "description": "height at first"}}
+    found = mpmkit.parse_case(data)
+    assert found.measurements["settled"].formula == "0.05 - height"
