@@ -72,7 +72,11 @@ class Chart {
         drag: { x: true, y: false, setScale: true },
         bind: { dblclick: (u, _, act) => act },
       },
-      hooks: { setCursor: [(u) => this.say(u.cursor.idx)], drawClear: [(u) => this.drawBand(u)] },
+      hooks: {
+        setCursor: [(u) => this.say(u.cursor.idx)],
+        drawClear: [(u) => this.drawBand(u)],
+        draw: [() => this.now && this.time !== undefined && this.mark(this.time)], // also where a part is enlarged
+      },
     };
   }
 
@@ -158,7 +162,6 @@ class Chart {
     this.watch = new ResizeObserver(() => {
       if (this.width() === this.u.width) return;
       this.u.setSize({ width: this.width(), height: HEIGHT });
-      if (this.time !== undefined) this.mark(this.time);
     });
     this.watch.observe(this.plot);
   }
