@@ -275,3 +275,13 @@ def test_moments_come_back_from_their_arrays():
         assert (found.time, found.share) == (given.time, given.share)
         np.testing.assert_array_equal(found.number, given.number)
         np.testing.assert_array_equal(found.position, given.position)
+
+
+def test_the_balance_says_that_the_floor_carries_the_weight(tmp_path):
+    """A coarse slump at rest after 1.5 s: the floor carries its weight to within a percent."""
+    text = text_of(page_of(a_slump(tmp_path / "run", "until=1.5")))
+    weight = float(re.search(r"Weight ([\d.]+) N", text)[1])
+    carried = float(re.search(r"Walls carry ([\d.]+) N upwards", text)[1])
+    assert weight == pytest.approx(9.81 * float(re.search(r"Mass ([\d.]+) kg", text)[1]), rel=2e-3)
+    assert carried == pytest.approx(weight, rel=0.01)
+    assert "unchanged from start to end" in text

@@ -108,6 +108,8 @@ def test_play_advances_and_stops(page: Window):
     page.until(f"{PLAYER}.time > 0")
     assert page.find(".play").get_attribute("aria-label") == "Pause"
     page.find(".play").click()
+    page.until(f"!{PLAYER}.playing")  # a busy machine takes its time for a click
+    assert page.find(".play").get_attribute("aria-label") == "Play"
     time = page.run(f"return {PLAYER}.time")
     page.run("return new Promise((done) => setTimeout(done, 150))")
     assert page.run(f"return {PLAYER}.time") == time
@@ -209,3 +211,19 @@ def test_a_scene_in_three_dimensions_turns_and_comes_nearer(browser: Window, tmp
     assert browser.run(PICTURE.format("material")) != turned
     stage.send_keys(Keys.ARROW_LEFT)
     assert browser.run(f"return {PLAYER}.view.turn") == pytest.approx(-0.9 - 0.96 + 0.1)
+
+
+def test_a_chart_shows_the_time_of_the_player_also_where_a_part_is_enlarged(page: Window):
+    page.run(f"{PLAYER}.seek(0.1)")
+    place = (
+        "const { u, now } = mpmkit.page.charts[0];"
+        "return [now.style.display, new DOMMatrix(now.style.transform).e / u.over.clientWidth]"
+    )
+    assert page.run(place) == ["block", pytest.approx(0.5, abs=0.01)]
+    page.run("mpmkit.page.charts[0].u.setScale('x', { min: 0.08, max: 0.16 })")
+    page.until("Math.abs(mpmkit.page.charts[0].u.scales.x.min - 0.08) < 1e-9")
+    page.run("return new Promise((done) => setTimeout(done, 50))")
+    assert page.run(place) == ["block", pytest.approx(0.25, abs=0.01)]
+    page.run("mpmkit.page.charts[0].u.setScale('x', { min: 0.12, max: 0.16 })")
+    page.run("return new Promise((done) => setTimeout(done, 50))")
+    assert page.run(place)[0] == "none"

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...case.model import STANDARD_GRAVITY
 from ..energies import CURVES
 from ..wall_forces import charts_of, chosen_of
 from .histories import listed, of_curves, rows_of
@@ -16,6 +17,8 @@ from .words import number, percent
 
 NEGLIGIBLE = 1e-4
 """Part of the largest figure below which a chart or a curve would show nothing but noise."""
+LAST = 0.1
+"""Part of the rows over which a force at the end is averaged."""
 
 
 def section(source: Source) -> Section | None:
@@ -24,7 +27,7 @@ def section(source: Source) -> Section | None:
     if energies := _energies(source):
         charts["energies"] = energies
     charts |= _walls(source)
-    said = [*_mass(source), *_energy(source)]
+    said = [*_mass(source), *_weight(source), *_energy(source)]
     if not said and not charts:
         return None
     body = pairs(said)
@@ -97,6 +100,24 @@ def _mass(source: Source) -> list[tuple[str, str]]:
     return found
 
 
+def _weight(source: Source) -> list[tuple[str, str]]:
+    """What the material weighs, and what the walls carry of it at the end."""
+    history, mass = source.results.history, source.results.series("total_mass")
+    gravity = source.results.case.get("gravity") or [0.0, -STANDARD_GRAVITY]
+    rows, upright = len(source.results.time), gravity[-1] < 0 and not any(gravity[:-1])
+    if not upright or mass is None or "wall_force" not in history or rows < 3:
+        return []
+    vertical = history["wall_force"].values[..., -1].sum(axis=1)[-max(1, round(LAST * rows)) :]
+    return [
+        ("Weight", f"{number(-float(mass[-1]) * gravity[-1])} N"),
+        (
+            "Walls carry",
+            f"{number(float(np.mean(vertical)))} N upwards, mean over the last tenth of the run; "
+            "where the material is at rest, that is its weight",
+        ),
+    ]
+
+
 def _energy(source: Source) -> list[tuple[str, str]]:
     """What came in and what is left, so that the rest is what the flow turned into heat."""
     results = source.results
@@ -113,7 +134,8 @@ def _energy(source: Source) -> list[tuple[str, str]]:
     if potential is not None and potential.any():
         found.append(("Energy set free by gravity", f"{number(float(potential[0] - potential[-1]))} J"))
     if worked := _work_of_walls(source):
-        found.append(("Energy from moving walls", f"{number(worked)} J"))
+        which = "from" if worked > 0 else "taken by"
+        found.append((f"Energy {which} moving walls", f"{number(abs(worked))} J"))
     put_in = results.series("redistribution_energy")
     moved = 0.0 if put_in is None else float(put_in[-1])
     start, end = (sum(float(values[row]) for values in present.values()) for row in (0, -1))

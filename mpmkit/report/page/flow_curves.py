@@ -16,7 +16,7 @@ from ...rheology.flow_curve import flow_curve
 from .histories import listed
 from .section import Section, chart_place, note, pairs
 from .source import Source
-from .words import given, number
+from .words import given, in_signs, number
 
 POINTS = 121
 DECADES = (1e-3, 1e3)
@@ -73,9 +73,10 @@ def _parameters(material: Material) -> list[tuple[str, str]]:
         if value is None:
             continue
         extra = field.json_schema_extra
-        unit = extra.get("unit", "") if isinstance(extra, dict) else ""
+        unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
         shown = given(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
-        found.append((key.replace("_", " ").capitalize(), f"{shown} {'' if unit == '1' else unit}".rstrip()))
+        signs = "" if unit == "1" else in_signs(unit)
+        found.append((key.replace("_", " ").capitalize(), f"{shown} {signs}".rstrip()))
     return found
 
 

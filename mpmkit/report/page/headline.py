@@ -35,7 +35,8 @@ def _ending(source: Source) -> str:
     summary, time = source.results.summary, source.results.time
     if source.running:
         until = source.results.case["until"]
-        return f"The run is at work: t = {seconds(float(time[-1]))} of {number(until)} s."
+        of = f" of {number(until)} s" if isinstance(until, int | float) else ""
+        return f"The run is at work: t = {seconds(float(time[-1]))}{of}."
     why, end = summary["stopped_because"], summary.get("simulated_time") or 0.0
     if why not in ENDED:
         errors = [said.text for said in source.last_start if said.level == "ERROR"]
@@ -130,7 +131,7 @@ def _extent(source: Source) -> list[tuple[str, str, str]]:
     value = _last(source, "spread_diameter")
     if value is None or source.results.stopped_by_guard:
         return []
-    return [("Width", length(value), "of the material along the horizontal axes, at the end")]
+    return [("Width", length(value), f"of the material along the horizontal axes, {_when(source)}")]
 
 
 def _height(source: Source) -> tuple[str, str, str] | None:
@@ -140,8 +141,12 @@ def _height(source: Source) -> tuple[str, str, str] | None:
     return (
         "Height",
         length(value),
-        "of the highest point of the material, at the end",
+        f"of the highest point of the material, {_when(source)}",
     )
+
+
+def _when(source: Source) -> str:
+    return "now" if source.running else "at the end"
 
 
 def _speed(source: Source) -> tuple[str, str, str] | None:

@@ -157,7 +157,9 @@ def _controls(source: Source, quantities: list[str]) -> str:
         f"<span>{escape(LABELS[name][0])}</span></label>"
         for row, name in enumerate(quantities)
     )
-    how = "Drag to turn, scroll or pinch to come nearer; arrow keys turn, + and − come nearer."
+    how = (
+        "Drag to turn. Click and then scroll, or pinch, to come nearer. Arrow keys turn, + and − come nearer."
+    )
     solid = source.space.dim == 3
     stage = "The material in three dimensions" if solid else "Section through the material"
     return (

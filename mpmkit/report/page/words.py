@@ -31,6 +31,13 @@ def given(value: float) -> str:
     return f"{value:.6g}"
 
 
+def in_signs(unit: str) -> str:
+    """A unit with raised exponents, such as kg/m³."""
+    for power, sign in (("^2", "²"), ("^3", "³"), ("^n", "ⁿ")):
+        unit = unit.replace(power, sign)
+    return unit
+
+
 def length(metres: float) -> str:
     """A length in mm, or in m where it is large."""
     return f"{number(metres)} m" if abs(metres) >= 10 else f"{number(1e3 * metres)} mm"

@@ -51,6 +51,7 @@ class Chart {
     const [ink, hair] = [styled('--soft'), styled('--hair')];
     const font = `12px ${styled('--font')}`;
     const axis = { stroke: ink, font, labelFont: font, grid: { stroke: hair, width: 1 }, ticks: { stroke: hair, width: 1, size: 4 } };
+    if (data.logarithmic && !data.names) axis.grid.filter = (_, splits) => splits.map((value) => (isPower(value) ? value : null));
     if (data.logarithmic) axis.values = (_, splits) => splits.map((value) => (value === null ? '' : power(value)));
     else axis.values = (_, splits, __, ___, step) => splits.map((value) => value.toFixed(decimals(step)).replace('-', '−'));
     const scale = data.logarithmic ? { distr: 3 } : {};
@@ -71,7 +72,11 @@ class Chart {
         drag: { x: true, y: false, setScale: true },
         bind: { dblclick: (u, _, act) => act },
       },
-      hooks: { setCursor: [(u) => this.say(u.cursor.idx)], drawClear: [(u) => this.drawBand(u)] },
+      hooks: {
+        setCursor: [(u) => this.say(u.cursor.idx)],
+        drawClear: [(u) => this.drawBand(u)],
+        draw: [() => this.now && this.time !== undefined && this.mark(this.time)], // also where a part is enlarged
+      },
     };
   }
 
@@ -157,7 +162,6 @@ class Chart {
     this.watch = new ResizeObserver(() => {
       if (this.width() === this.u.width) return;
       this.u.setSize({ width: this.width(), height: HEIGHT });
-      if (this.time !== undefined) this.mark(this.time);
     });
     this.watch.observe(this.plot);
   }
@@ -189,11 +193,16 @@ function part(colour, label, value) {
   return element;
 }
 
+/** Whether a value is a whole power of ten. */
+function isPower(value) {
+  const exponent = Math.log10(value);
+  return Math.abs(exponent - Math.round(exponent)) < 1e-6;
+}
+
 /** A power of ten as 10ⁿ, or plain where it is short; nothing for what is between. */
 function power(value) {
-  const exponent = Math.log10(value);
-  if (Math.abs(exponent - Math.round(exponent)) > 1e-6) return shown(value, 1);
-  const n = Math.round(exponent);
+  if (!isPower(value)) return shown(value, 1);
+  const n = Math.round(Math.log10(value));
   if (n >= -2 && n <= 4) return String(Number(value.toPrecision(1)));
   return `10${String(n).replace('-', '⁻').replace(/\d/g, (digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[digit])}`;
 }

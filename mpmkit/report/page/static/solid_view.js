@@ -115,6 +115,7 @@ class SolidView {
       stage.addEventListener(kind, (event) => pointers.delete(event.pointerId));
     }
     stage.addEventListener('wheel', (event) => {
+      if (document.activeElement !== stage && !event.ctrlKey) return; // else the page would not scroll past it
       event.preventDefault();
       this.zoom(Math.exp(-0.0015 * event.deltaY));
       changed();
