@@ -282,6 +282,16 @@ def test_a_watched_run_leaves_what_any_run_leaves_and_the_same_bits(tiny):
     ]
 
 
+def test_a_run_that_is_refused_is_one_sentence_and_has_no_page(tiny, capfd):
+    (tiny / "full").mkdir()
+    (tiny / "full/file").touch()
+    assert status("run", "tiny.json", "--watch", "--out", "full") == 2
+    time.sleep(0.5)
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1
+    assert "is not empty" in said
+
+
 @pytest.mark.parametrize("option", ["--watch", "--open", "--plot"])
 def test_quiet_and_watching_contradict_each_other(tiny, capsys, option):
     assert status("run", "tiny.json", "--quiet", option) == 2
