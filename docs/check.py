@@ -1,6 +1,7 @@
 """Check that the docs are whole; prints what is not, and ends with status 1 if there is anything.
 
-    python docs/check.py                       # marks of merges, dead links, figures that nothing makes
+    python docs/check.py                       # marks of merges, dead links, missing files, figures
+                                               # without a script, phrases that few understand
     python docs/check.py --scripts             # and that every script has a help that writes nothing
     python docs/check.py --run runs/slump      # and that the README's numbers are those of this run
 
@@ -26,6 +27,23 @@ REFERENCE = ROOT / "tests/validation/reference/slump_free_slip_herschel_bulkley.
 MARK = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"docs/images/[\w/*.]+\.png")
+FILE = re.compile(r"`((?:mpmkit|plugins|tests|docs|cases|benchmarks)/[\w/.-]+\.\w+)`")
+TEST = re.compile(r"`(test_\w+\.py)`")
+RIDDLES = (
+    "unless told",
+    "told of",
+    "hears of",
+    "hear of",
+    "numbers that are none",
+    "what a scene needs",
+    "say the same",
+    "said the same",
+    "can hardly be meant",
+    "made one's own",
+    "no more of it than",
+    "as may be",
+)
+"""Phrases that a reader must read twice; the field's words say the same thing at once."""
 ROUNDED = 0.6
 """Of the last digit given: by how much a number may be off that is said rounded."""
 README_NUMBERS = re.compile(
@@ -68,6 +86,27 @@ def dead_links() -> Iterator[str]:
                 yield f"{_named(page)}: there is no heading '#{anchor}' in '{_named(path)}'"
 
 
+def files_that_are_not_there() -> Iterator[str]:
+    """Files that a page names in ``code``, such as those that compute the equations of the theory."""
+    for page in tracked("README.md", "CONTRIBUTING.md", "docs/*.md"):
+        for name in FILE.findall(page.read_text(encoding="utf-8")):
+            if not (ROOT / name).exists():
+                yield f"{_named(page)}: there is no file '{name}'"
+        for name in TEST.findall(page.read_text(encoding="utf-8")):
+            if not list(ROOT.glob(f"tests/**/{name}")):
+                yield f"{_named(page)}: there is no test file '{name}'"
+
+
+def riddles() -> Iterator[str]:
+    """Phrases that few understand, on the pages and in messages and docstrings of the program."""
+    for path in tracked("README.md", "CONTRIBUTING.md", "docs/*.md", "mpmkit/*.py", "plugins/*.py"):
+        text = path.read_text(encoding="utf-8")
+        plain = re.sub(r"\s+", " ", text).lower()
+        for phrase in RIDDLES:
+            if re.search(rf"\b{phrase}\b", plain):
+                yield f"{_named(path)}: '{phrase}' is hard to understand; say it in plain words"
+
+
 def anchors(page: Path) -> set[str]:
     """Names of the headings of a page, as Markdown renderers make them."""
     headings = re.findall(r"^#+ (.+)$", _without_code(page.read_text(encoding="utf-8")), re.MULTILINE)
@@ -80,12 +119,33 @@ def figures_without_a_source() -> Iterator[str]:
     made = [name for script in scripts() for name in IMAGE.findall(_docstring(script))]
     pages = {page: page.read_text(encoding="utf-8") for page in tracked("*.md")}
     shown = {(page.parent / link).resolve() for page, text in pages.items() for link in LINK.findall(text)}
+    shown |= {picture.resolve() for picture in gallery()}
     for picture in tracked("docs/images/*.png"):
         name = picture.relative_to(ROOT).as_posix()
         if not any(fnmatch.fnmatch(name, pattern) for pattern in made):
             yield f"{name}: no script names it in its docstring as what it makes"
         if picture.resolve() not in shown:
             yield f"{name}: no page shows it"
+
+
+def gallery() -> list[Path]:
+    """Pictures of the cases, which the gallery of the site shows."""
+    entries = DOCS / "gallery.json"
+    if not entries.exists():
+        return []
+    found = json.loads(entries.read_text(encoding="utf-8"))
+    return [DOCS / "images" / entry.get("picture", f"gallery/{name}.png") for name, entry in found.items()]
+
+
+def cases_that_the_gallery_lacks() -> Iterator[str]:
+    """Every case in ``cases/`` has an entry in the gallery, and every entry a case and a picture."""
+    named = set(json.loads((DOCS / "gallery.json").read_text(encoding="utf-8")))
+    shipped = {case.stem for case in tracked("cases/*.json") if case.parent.name == "cases"}
+    for name in sorted(named ^ shipped):
+        yield f"docs/gallery.json: '{name}' is only {'there' if name in named else 'in cases/'}"
+    for picture in gallery():
+        if not picture.exists():
+            yield f"docs/gallery.json: there is no '{_named(picture)}'"
 
 
 def scripts() -> list[Path]:
@@ -164,7 +224,8 @@ def main() -> None:
     )
     parser.add_argument("--run", type=Path, metavar="DIR", help="run directory of cases/slump.json")
     chosen = parser.parse_args()
-    wrong = [*merge_marks(), *dead_links(), *figures_without_a_source()]
+    wrong = [*merge_marks(), *dead_links(), *files_that_are_not_there(), *figures_without_a_source()]
+    wrong += [*cases_that_the_gallery_lacks(), *riddles()]
     if chosen.scripts:
         wrong += scripts_without_help()
     if chosen.run is not None:

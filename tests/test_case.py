@@ -80,7 +80,7 @@ BAD = [
     (
         "grid",
         ABSENT,
-        "it must be an object with the keys 'cell_size' and 'domain', and if need be the key 'faces'",
+        "it must be an object with the keys 'cell_size' and 'domain', and optionally the key 'faces'",
     ),
     ("bodies", ABSENT, "bodies is missing; it must be a list of one or more objects"),
     (
@@ -101,7 +101,7 @@ BAD = [
     (
         "bodies.0",
         3,
-        "bodies.0 is 3; it must be an object with the keys 'shape' and 'material', and if need be",
+        "bodies.0 is 3; it must be an object with the keys 'shape' and 'material', and optionally",
     ),
     (SHAPE, "box", "bodies.0.shape is \"box\"; it must be an object with a 'kind' that is"),
     (f"{SHAPE}.lower", [0.2, "a"], 'bodies.0.shape.lower.1 is "a"; it must be a number, in m'),
@@ -182,7 +182,7 @@ BAD = [
         "particles_per_cell is 5; one number must be a square (1, 4, 9, 16, …)",
     ),
     ("scheme.time_step.fraction", 2, "fraction is 2; it must be a number above 0 and at most 1"),
-    ("scheme.time_step.ignore", ["viscous", "acoustic"], "it must spare the acoustic limit"),
+    ("scheme.time_step.ignore", ["viscous", "acoustic"], "it must not contain 'acoustic'"),
     ("output.frame_interval", 1e-9, "output.frame_interval is 1e-09 s; it must be at least 1e-06 s"),
     # plug-ins
     (f"{MATERIAL}.law", "bingam", '.law is "bingam"; it must be "bingham", "'),

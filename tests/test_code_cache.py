@@ -489,3 +489,17 @@ def test_scenes_of_code_just_compiled_and_of_code_that_was_kept_agree_to_the_bit
     case = Path(__file__).parents[1] / "cases" / f"{name}.json"
     compiled, kept = twice_in_processes_of_their_own(STEPS, tmp_path, str(case), *changes)
     assert compiled == kept
+
+
+def test_a_function_is_compiled_once_for_all_constants_of_one_type():
+    @cached_code(numba.njit)
+    def power(x, exponent, inverse):
+        return x**-exponent if inverse else x**exponent
+
+    @cached_code(numba.njit)
+    def both(x):
+        return power(x, 2, False) + power(x, 3, False) + power(x, 1, True)
+
+    assert both(2.0) == 4 + 8 + 0.5
+    if not numba.config.DISABLE_JIT:
+        assert len(power.overloads) == 1

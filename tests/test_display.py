@@ -62,7 +62,8 @@ def test_the_bar_fits(monkeypatch, width, name):
     with Display(name) as seen:
         logging.getLogger("mpmkit").info("x")
         seen(SimpleNamespace(
-            time=0.5, until=1.0, steps=10, particle_steps_per_second=3.2e6, seconds_left=83.0
+            time=0.5, until=1.0, steps=10, particle_steps_per_second=3.2e6, seconds_left=83.0,
+            ends_earlier=False,
         ))  # fmt: skip
         seen._bar.refresh()
     line = next(line for line in reversed(shown.getvalue().splitlines()) if "50%" in line)

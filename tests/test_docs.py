@@ -47,6 +47,33 @@ def test_dead_links_are_found(checks, tmp_path):
     ]
 
 
+def test_a_file_that_is_named_and_not_there_is_found(checks, tmp_path):
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests/test_there.py").touch()
+    page = "`tests/test_there.py` `mpmkit/gone.py` `test_there.py` `test_gone.py`\n"
+    (tmp_path / "README.md").write_text(page)
+    assert list(checks.files_that_are_not_there()) == [
+        "README.md: there is no file 'mpmkit/gone.py'",
+        "README.md: there is no test file 'test_gone.py'",
+    ]
+
+
+def test_a_phrase_that_few_understand_is_found(checks, tmp_path):
+    (tmp_path / "README.md").write_text("The rate is 0.5 unless\ntold.\n")
+    assert list(checks.riddles()) == ["README.md: 'unless told' is hard to understand; say it in plain words"]
+
+
+def test_a_case_that_the_gallery_lacks_is_found(checks, tmp_path):
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases/new.json").write_text("{}")
+    (tmp_path / "docs/gallery.json").write_text('{"old": {"picture": "old.png"}}')
+    assert list(checks.cases_that_the_gallery_lacks()) == [
+        "docs/gallery.json: 'new' is only in cases/",
+        "docs/gallery.json: 'old' is only there",
+        "docs/gallery.json: there is no 'docs/images/old.png'",
+    ]
+
+
 def test_a_picture_that_no_script_makes_is_found(checks, tmp_path):
     for name in ("made", "unmade"):
         (tmp_path / f"docs/images/{name}.png").touch()

@@ -88,7 +88,7 @@ def test_plan_and_run_say_it_before_the_fall(tmp_path, capsys, monkeypatch):
     case = scene(BLOCK, until=0.4).model_dump(mode="json", exclude_unset=True)
     file.write_text(json.dumps(case))
     assert execute(["plan", str(file), "--threads", "1"]) == 0
-    assert "warning: bodies.0 has no floor: gravity draws it to the face z_min" in capsys.readouterr().out
+    assert "warning: bodies.0 has no floor: gravity pulls it to the face z_min" in capsys.readouterr().out
     out = tmp_path / "run"
     execute(["run", str(file), "--set", "output.report=false", "--threads", "1", "--out", str(out)])
     shown = capsys.readouterr().err
@@ -103,7 +103,7 @@ def test_a_body_that_hangs_from_a_plane_of_symmetry_is_said():
     """No wall does that to it: a wall that slips lets go, and one that sticks is asked to."""
     over, faces = box([0.5, 0], [1, 0.5]), {"z_max": "stick"}
     hanging = scene(over, faces=faces | {"z_min": "symmetry"}, gravity=(0, 9.81))
-    assert "bodies.0 hangs from the face z_min: gravity draws it away from there" in said(hanging)
+    assert "bodies.0 hangs from the face z_min: gravity pulls it away from there" in said(hanging)
     assert '"symmetry" face does not let go of what is at it; "slip" does' in said(hanging)
     for wall in ("slip", "stick", {"kind": "friction", "coefficient": 1}):
         assert said(scene(over, faces=faces | {"z_min": wall}, gravity=(0, 9.81))) == ""
@@ -139,13 +139,13 @@ def test_what_rests_on_its_floor_does_not_hang():
 # --- Bodies that touch
 
 FLOOR = {"z_min": "slip"}
-LIQUIDS, CONTACT = "are not to be trusted", "there is no contact between bodies yet"
+LIQUIDS, CONTACT = "do not trust their motion", "there is no contact between bodies yet"
 
 
 def test_two_liquids_that_touch_are_not_to_be_trusted():
     layers = box([0, 0], [2, 0.5], MUD), box([0, 0.5], [2, 1], WATER)
     (sentence,) = forewarnings(scene(*layers, faces=FLOOR))
-    assert "bodies.0 and bodies.1 are two fluids that touch, or come to" in sentence
+    assert "bodies.0 and bodies.1 are two fluids that touch, or will touch" in sentence
     assert LIQUIDS in sentence
     same = box([0, 0], [2, 0.5], MUD), box([0, 0.5], [2, 1], MUD)
     assert said(scene(*same, faces=FLOOR)) == ""
@@ -177,7 +177,7 @@ TWO = {
 def test_bodies_that_touch_or_come_to_are_said(first, second, gravity):
     for bodies in ((first, second), (second, first)):
         (sentence,) = forewarnings(scene(*bodies, faces=FLOOR, gravity=gravity))
-        assert "bodies.0 and bodies.1 touch, or come to" in sentence
+        assert "bodies.0 and bodies.1 touch, or will touch" in sentence
         assert "they stop 0.5 to 1.1 cells apart, drag each other" in sentence
         assert CONTACT in sentence
 

@@ -127,11 +127,11 @@ NEARLY_JSON = {
     "no quotes": ("{until: 1}", "line 1, column 2", 'must stand in double quotes: "until"'),
     "Python's True": ('{"a": True}', "line 1, column 7", "True must be written as true"),
     "half a number": ('{"a": .5}', "line 1, column 7", ".5 is not a JSON number"),
-    "a unit": ('{"a": 5 mm}', "line 1, column 9", "'mm' stands behind a number; all are in SI units"),
-    "a fraction": ('{"a": 1/10}', "line 1, column 8", "'/' stands behind a number; JSON does not calculate"),
-    "a product": ('{"a": [2 * 3]}', "line 1, column 10", "'*' stands behind a number"),
-    "a percentage": ('{"a": 10%}', "line 1, column 9", "'%' stands behind a number"),
-    "no comma": ('{"a": 1\n"b": 2}', "line 1, column 8", "a comma is missing"),
+    "a unit": ('{"a": 5 mm}', "line 1, column 9", "'mm' follows a number; all numbers are in SI units"),
+    "a fraction": ('{"a": 1/10}', "line 1, column 8", "'/' follows a number; JSON does not calculate"),
+    "a product": ('{"a": [2 * 3]}', "line 1, column 10", "'*' follows a number"),
+    "a percentage": ('{"a": 10%}', "line 1, column 9", "'%' follows a number"),
+    "no comma": ('{"a": 1\n"b": 2}', "line 1, column 8", "a comma or a closing bracket is missing"),
     "no end": ('{"a": [1, 2', "line 1, column 12", "1 '}' and 1 ']' must still come"),
 }
 
@@ -183,11 +183,12 @@ def test_what_is_said_to_install_is_what_the_extras_hold():
     """By the names of the packages, so that it works outside a registry that has mpmkit."""
     root = Path(__file__).parents[1]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    texts = {file: file.read_text(encoding="utf-8") for file in (*root.glob("docs/*.md"), root / "README.md")}
+    pages = (*root.glob("docs/**/*.md"), root / "README.md")
+    texts = {file: file.read_text(encoding="utf-8") for file in pages}
     texts |= {file: file.read_text(encoding="utf-8") for file in root.glob("mpmkit/**/*.py")}
     assert not [str(file) for file, text in texts.items() if re.search(r"pip install\s+'?mpmkit\[", text)]
     for extra, requirements in extras.items():
-        if extra in ("mesh", "cluster"):
+        if extra in ("mesh", "cluster", "movie"):
             said = [text for text in texts.values() if f"pip install '.[{extra}]'" in text]
             assert said, extra
             names = " ".join(re.split(r"[><=]", requirement)[0] for requirement in requirements)

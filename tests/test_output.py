@@ -303,7 +303,8 @@ class TestSummary:
         summary = self.summary(small_history())
         keys = "t500 t500_from_lift final_spread final_slump final_height final_spread_rate at_rest_since "
         keys += (
-            "simulated_time particles steps wall_time particle_steps_per_second stopped_because plugins units"
+            "simulated_time particles steps wall_time particle_steps_per_second stopped_because ended_by "
+            "plugins units"
         )
         assert list(summary) == keys.split()
         assert summary["t500"] == 0.15
@@ -316,7 +317,7 @@ class TestSummary:
 
     def test_every_number_has_a_unit(self):
         summary = self.summary(small_history())
-        numbers = summary.keys() - {"stopped_because", "plugins", "units"}
+        numbers = summary.keys() - {"stopped_because", "ended_by", "plugins", "units"}
         assert summary["units"].keys() == numbers
         assert summary["units"]["t500"] == summary["units"]["at_rest_since"] == "s"
         assert summary["units"]["final_spread"] == "m"

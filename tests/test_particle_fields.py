@@ -63,11 +63,11 @@ def test_frames_hold_states_stress_and_the_yielded_zone(registry, tmp_path):
     time, path = read_frames(tmp_path / "run" / "frames")[-1]
     frame = read_frame(path)
     ageing = frame["body"] == 1
-    assert frame["age"][ageing] == pytest.approx(time)
-    assert np.isnan(frame["age"][~ageing]).all()
-    assert frame["back_stress"].shape == (len(ageing), 4)
-    assert (frame["back_stress"][ageing] == 1.5).all()
-    assert (frame["pressure_of_ageing"][ageing] == 0).all()
+    assert frame["law.age"][ageing] == pytest.approx(time)
+    assert np.isnan(frame["law.age"][~ageing]).all()
+    assert frame["law.back_stress"].shape == (len(ageing), 4)
+    assert (frame["law.back_stress"][ageing] == 1.5).all()
+    assert (frame["law.pressure"][ageing] == 0).all()
     assert np.isfinite(frame["pressure"]).all()
     # VTK's order, xx, yy, zz, xy, yz, xz, in the axes of the file: its y is the vertical
     assert (frame["stress"][ageing, 3] == 3.0).all()
@@ -92,7 +92,11 @@ def test_frames_of_two_dimensions_lie_in_the_plane_of_a_viewer(registry, tmp_pat
 
 def test_a_history_keeps_what_it_is_asked_for(registry):
     names = ["age", "back_stress", "pressure", "pressure_of_ageing", "yielded", "shear_stress", "shear_rate"]
+    names += ["law.age", "law.back_stress", "law.pressure"]  # as those without "law." were called up to 0.9
     history = mpmkit.run(case(registry, particle_history=names, history_interval=0.005))
+    for name, former in (("age", "age"), ("back_stress", "back_stress"), ("pressure", "pressure_of_ageing")):
+        np.testing.assert_array_equal(history[f"law.{name}"].values, history[former].values)
+    assert history["law.back_stress"].dims == ("time", "particle", "law.back_stress_component")
     assert history.age.dims == ("time", "particle")
     assert history.age.attrs == {"units": "s", "long_name": "time since the start"}
     assert history.back_stress.dims == ("time", "particle", "back_stress_component")

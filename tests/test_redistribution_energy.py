@@ -202,7 +202,7 @@ def test_a_redistribution_that_heats_is_stopped(by):
         run(simulation, 3000)
     assert stop.value.guard == "energy"
     put_in = simulation.guards.balance.redistributed
-    assert f"redistribution 'shakes' has put in {put_in:.4g} J: try another one, or 'none'" in str(stop.value)
+    assert f"redistribution 'shakes' has added {put_in:.4g} J: try another one, or 'none'" in str(stop.value)
 
 
 def test_even_is_not_stopped_for_what_it_puts_in():

@@ -177,7 +177,9 @@ def test_text_of_a_case_stays_text_and_what_cannot_be_drawn_is_left_out(monkeypa
     assert "newtonian" in shown
 
 
-PROGRESS = Progress(time=0.5, until=2.0, steps=10, particle_steps_per_second=1e6, seconds_left=3.0)
+PROGRESS = Progress(
+    time=0.5, until=2.0, ends_earlier=False, steps=10, particle_steps_per_second=1e6, seconds_left=3.0
+)
 
 
 def test_progress_on_a_terminal(monkeypatch):
@@ -192,7 +194,7 @@ def test_progress_on_a_terminal(monkeypatch):
     assert "slump" in screen.getvalue()
     assert " 25 %  t = 0.5 of 2 s, 3 s left" in screen.getvalue()
     assert not screen.getvalue().endswith("\n")
-    show(Progress(2.0, 2.0, 40, 1e6, 0.0))
+    show(Progress(2.0, 2.0, False, 40, 1e6, 0.0))
     assert screen.getvalue().endswith("\n")
 
 

@@ -38,6 +38,7 @@ MADE_OF_THE_CASE = {
     "Refiner": {"dim", "acts", "_author", "_grid", "_radial", "_full"},
     "EnergyBalance": {"_downwards", "_along"},
     "Recorder": {"directory"},
+    "Ending": {"_until"},
     "History": {"attributes", "_columns", "_axes", "_variables", "_walls"},
     "FrameWriter": {"directory", "_planar"},
     "WallFrames": {"_surfaces", "_spacing", "_lower", "_upper"},

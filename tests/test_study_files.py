@@ -113,7 +113,7 @@ BAD = {
             "case": "tiny.json",
             "vary": {"scheme.shape.domain": ["fixed", "stretch"], "scheme.shape": ["cpgimp"]},
         },
-        "vary.scheme.shape.domain and vary.scheme.shape change one place of the case: "
+        "vary.scheme.shape.domain and vary.scheme.shape change the same place of the case: "
         "scheme.shape.domain is a part of scheme.shape; vary it in one of them only",
     ),
     "a named set and a dimension": (
@@ -121,7 +121,7 @@ BAD = {
             "case": "tiny.json",
             "vary": {"until": [1, 2], "end": {"late": {"gravity": [0, -1], "until": 3}, "early": {}}},
         },
-        "vary.until and vary.end change one place of the case: both set until",
+        "vary.until and vary.end change the same place of the case: both set until",
     ),
     "two named sets": (
         {
@@ -131,7 +131,7 @@ BAD = {
                 "two": {"b": {"until": 1}, "c": {"bodies.00": {}}},
             },
         },
-        "vary.one and vary.two change one place of the case: bodies.0.velocity is a part of bodies.00",
+        "vary.one and vary.two change the same place of the case: bodies.0.velocity is a part of bodies.00",
     ),
     "a common value that none would have": (
         {
@@ -237,7 +237,7 @@ def test_bad_vary(options, sentence):
         (["gone.json", "--vary", "until=1"], "the case file cannot be read"),
         (
             ["tiny.json", "--vary", "scheme.shape.domain=fixed,stretch", "--vary", "scheme.shape=cpgimp"],
-            "--vary: vary.scheme.shape.domain and vary.scheme.shape change one place of the case",
+            "--vary: vary.scheme.shape.domain and vary.scheme.shape change the same place of the case",
         ),
         (
             ["tiny.json", "--vary", "scheme.shape=cpgimp", "--set", "scheme.shape.domain=stretch"],

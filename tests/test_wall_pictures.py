@@ -13,13 +13,13 @@ from mpmkit.output import (
     WallFrameWriter,
     write_json,
 )
+from mpmkit.output.columns import wall_columns
 from mpmkit.report import draw_pictures, outline, wall_forces
 from mpmkit.report.domain import domain_of
 from mpmkit.report.run_results import read_results
 from mpmkit.report.section import plane_of
 from mpmkit.report.style import FACE_COLOURS, WALL_COLOURS
 from mpmkit.report.wall_lines import wall_lines
-from mpmkit.running.recorder import wall_columns
 from mpmkit.spaces import SPACES
 
 CELL = 0.1

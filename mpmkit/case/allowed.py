@@ -92,7 +92,7 @@ class Place:
         others = [key for key in self.keys() if key not in needed]
         if not needed:
             return f"an object that may have {_keys(others)}"
-        return f"an object with {_keys(needed)}" + (f", and if need be {_keys(others)}" if others else "")
+        return f"an object with {_keys(needed)}" + (f", and optionally {_keys(others)}" if others else "")
 
     def _describe(self, node: Node) -> str:
         kind = node.get("type", "")

@@ -26,6 +26,7 @@ from ..registry import Registry, installed
 from .consistency import check
 from .html import case_html
 from .model import Body, Case, Material, Scheme, Wall
+from .output import OutputSettings
 
 
 class CheckedCase(Case):
@@ -84,16 +85,21 @@ def _none_of(kind: str) -> Any:
     return Annotated[Any, BeforeValidator(refuse), WithJsonSchema({"not": {}, "allowed": allowed})]
 
 
-def _choice(registry: Registry, kind: str, default: str) -> tuple[Any, Any]:
-    """Annotation and default of a field that holds a plug-in, by its name or by name and parameters."""
+def _choice(registry: Registry, kind: str, default: str, meaning: str) -> tuple[Any, Any]:
+    """Annotation and field of a plug-in that is given by its name, or by name and parameters."""
     plugins = registry.of_kind(kind)
-    preset = Field(default=default, validate_default=True) if default in plugins else ...
-    return _one_of(kind, plugins, "name"), preset
+    preset: dict[str, Any] = {"default": default, "validate_default": True} if default in plugins else {}
+    return _one_of(kind, plugins, "name"), Field(description=meaning, **preset)
 
 
 def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
-    """Annotation of a field that holds a plug-in which says its name at ``kind``, and has no default."""
-    return _one_of(kind, registry.of_kind(kind), "kind"), ...
+    """Annotation and field of a plug-in which says its name at ``kind``, and has no default."""
+    return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
+
+
+def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
+    """Annotation of a field that holds plug-ins by names of the user's."""
+    return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -104,7 +110,9 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
         __base__=base,
         __doc__=law.__doc__,
         law=(Literal[law.name], ...),
-        equation_of_state=_choice(registry, "equation_of_state", "linear"),
+        equation_of_state=_choice(
+            registry, "equation_of_state", "linear", "pressure as a function of the volume ratio J"
+        ),
         **own_fields,  # type: ignore[call-overload]
     )
 
@@ -114,18 +122,25 @@ def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
     laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
     body = create_model(
-        "Body", __base__=Body, __doc__=Body.__doc__, material=(_one_of("law", laws, "law"), ...)
+        "Body",
+        __base__=Body,
+        __doc__=Body.__doc__,
+        material=(_one_of("law", laws, "law"), Body.model_fields["material"]),
     )
     scheme = create_model(
         "Scheme",
         __base__=Scheme,
         __doc__=Scheme.__doc__,
-        shape=_choice(registry, "shape", "cpgimp"),
-        order=_choice(registry, "order", "usl"),
-        velocity=_choice(registry, "velocity", "apic"),
-        volumetric=_choice(registry, "volumetric", "nodal-average"),
-        redistribution=_choice(registry, "redistribution", "even"),
-        refinement=_choice(registry, "refinement", "none"),
+        shape=_choice(registry, "shape", "cpgimp", "how far a particle reaches on the grid"),
+        order=_choice(registry, "order", "usl", "when in a step the stress is updated"),
+        velocity=_choice(registry, "velocity", "apic", "how particles take the velocity of the grid"),
+        volumetric=_choice(
+            registry, "volumetric", "nodal-average", "how volumetric rate and pressure are averaged"
+        ),
+        redistribution=_choice(
+            registry, "redistribution", "even", "how particles are kept evenly spaced in fluids"
+        ),
+        refinement=_choice(registry, "refinement", "none", "how the number of particles follows the flow"),
     )
     wall = create_model(
         "Wall",
@@ -134,13 +149,21 @@ def case_model(registry: Registry) -> type[Case]:
         surface=_named(registry, "surface"),
         contact=_named(registry, "contact"),
     )
+    output = create_model(
+        "OutputSettings",
+        __base__=OutputSettings,
+        __doc__=OutputSettings.__doc__,
+        diagnostics=_by_name(registry, "diagnostic", OutputSettings.model_fields["diagnostics"]),
+        fields=_by_name(registry, "particle_field", OutputSettings.model_fields["fields"]),
+    )
     model = create_model(
         "Case",
         __base__=CheckedCase,
         __doc__=Case.__doc__,
-        bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
+        bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
-        scheme=(scheme, Field(default={}, validate_default=True)),
+        scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),
+        output=(output, Field(default={}, validate_default=True, description="what the run writes")),
     )
     model.registry = registry
     return model

@@ -11,15 +11,18 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import PluginFault
+from ..output.columns import COLUMNS
 from ..output.variables import PARTICLE_VARIABLES
 from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
+from .diagnostics import diagnostic_columns
+from .ending import Until
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
-from .state_variables import state_variables
+from .state_variables import TAKEN, former_names, state_variables
 from .synonyms import nearest
-from .walls import check_walls
+from .walls import NAME, check_walls
 from .whole_cells import WHOLE, cells_along, extend_domain
 
 MOST_CELLS = 2**30
@@ -52,17 +55,54 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    _check_measured(case)
+    _check_until(case)
     check_walls(case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
-        _check_interval(f"output.{field}", getattr(case.output, field), case.until)
+        _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
 
 
+def _check_measured(case: Case) -> None:
+    """Diagnostics fit the scene, and fields have names of their own."""
+    for what in ("diagnostics", "fields"):
+        for name in getattr(case.output, what):
+            if not NAME.fullmatch(name):
+                raise ValueError(
+                    f"output.{what} has the name {shown(name)}; it must be of letters, digits, '_' and '-'"
+                )
+    walls = [*case.walls, *case.space_.faces]
+    for name, diagnostic in case.output.diagnostics.items():
+        with blaming_plugins([("diagnostic", diagnostic)]):
+            problem = diagnostic.problem(case.space_, walls)
+        if problem is not None:
+            raise ValueError(f"output.diagnostics.{name}: {problem}")
+    for name in case.output.fields:
+        if name in TAKEN or name in former_names(case):
+            raise ValueError(
+                f"output.fields has the name '{name}', which another particle field has; choose another name"
+            )
+
+
+def _check_until(case: Case) -> None:
+    scalars = [column.name for column in COLUMNS if not column.component]
+    scalars += [column.name for column in diagnostic_columns(case)]
+    for name in case.until.variables if isinstance(case.until, Until) else ():
+        if name not in scalars:
+            near = nearest(name, ["at_most", "rest", *scalars])
+            hint = (
+                f"did you mean '{near}'?" if near else f"it may have at_most, rest, and {', '.join(scalars)}"
+            )
+            raise ValueError(
+                f"until has the key '{name}', which is no scalar variable of the history; {hint}"
+            )
+
+
 def _check_particle_history(case: Case) -> None:
-    allowed = [*PARTICLE_VARIABLES, *state_variables(case)]
+    allowed = [*PARTICLE_VARIABLES, *state_variables(case), *case.output.fields]
     for number, name in enumerate(case.output.particle_history):
-        if name not in allowed:
+        if name not in allowed and name not in former_names(case):
             raise ValueError(
                 f"output.particle_history.{number} is {shown(name)}; it must be {one_of(allowed)}"
                 f"{_meant(name, allowed)}"
@@ -163,7 +203,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     if not material.constitutive_law.uses_equation_of_state:
         if material.sound_speed is not None:
             raise ValueError(
-                f"{field} is given, but the law '{material.law}' has a pressure of its own; leave it out"
+                f"{field} is given, but the law '{material.law}' computes its own pressure; leave it out"
             )
     elif material.sound_speed is None:
         raise ValueError(
@@ -182,7 +222,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
     speed = case.sound_speed(material)
     if speed is not None and not math.isfinite(material.density * speed * speed):
         given = f"{material.sound_speed:g}" if isinstance(material.sound_speed, float) else f"{speed:g} m/s"
-        raise ValueError(f"{field} is {given}, so that density times its square is too large for a number")
+        raise ValueError(f"{field} is {given}, and density times its square is too large to be computed")
 
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
@@ -214,8 +254,8 @@ def _check_time_step(case: Case) -> None:
         )
     if "acoustic" in ignored and ("viscous" in ignored or not viscous):
         raise ValueError(
-            f"scheme.time_step.ignore is {shown(ignored)}, which leaves nothing to limit the step of a scene "
-            "at rest; it must spare the acoustic limit"
+            f"scheme.time_step.ignore is {shown(ignored)}, but then nothing limits the time step of a "
+            "scene at rest; it must not contain 'acoustic'"
         )
 
 

@@ -93,10 +93,10 @@ def _falls_out(case: Case) -> Iterator[str]:
         speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
         pull = abs(float(g[axis]))
         time = (math.hypot(speed, math.sqrt(2 * pull * max(0.0, distance))) - speed) / pull
-        if time <= case.until:
-            when = "at once" if time < 1e-6 * case.until else f"after about {time:.2g} s"
+        if time <= case.end:
+            when = "at once" if time < 1e-6 * case.end else f"after about {time:.2g} s"
             yield (
-                f"bodies.{number} has no floor: gravity draws it to the face {side}, which is open, and it "
+                f"bodies.{number} has no floor: gravity pulls it to the face {side}, which is open, and it "
                 f'leaves the grid there {when}; for a floor write "{side}": "stick", or "slip", in grid.faces'
             )
 
@@ -117,7 +117,7 @@ def _hangs(case: Case) -> Iterator[str]:
                 opposite = case.grid.faces.get(_side(case, axis, not upwards))
                 between = opposite in CLOSED and _touches(case, body, axis, not upwards)
                 if (moves or falls) and not between and _touches(case, body, axis, upwards):
-                    why = "gravity draws" if falls else "its velocity takes"
+                    why = "gravity pulls" if falls else "its velocity takes"
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
                         f'"{face}" face does not let go of what is at it; "slip" does'
@@ -165,15 +165,15 @@ def _touching(case: Case) -> Iterator[str]:
             continue
         if of[i] != of[j] and fluid[of[i]] and fluid[of[j]]:
             yield (
-                f"bodies.{i} and bodies.{j} are two fluids that touch, or come to: where they move along "
+                f"bodies.{i} and bodies.{j} are two fluids that touch, or will touch: if they move along "
                 "each other they lose energy that they should keep (a wave between two thin liquids lost all "
-                "of it in less than a period), so that results of their motion are not to be trusted"
+                "of it in less than a period), so do not trust their motion"
             )
         else:
             yield (
-                f"bodies.{i} and bodies.{j} touch, or come to: bodies share the velocity of the grid, so "
-                "that they stop 0.5 to 1.1 cells apart, drag each other though no friction is asked for, and "
-                "do not part again as they should; there is no contact between bodies yet"
+                f"bodies.{i} and bodies.{j} touch, or will touch: bodies share the velocity of the grid, so "
+                "they stop 0.5 to 1.1 cells apart, drag each other without any friction in the case, and do "
+                "not separate as they should; there is no contact between bodies yet"
             )
 
 
@@ -181,7 +181,7 @@ def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
         return bool(case.gravity_vector.any()) or a.velocity is not None or b.velocity is not None
-    relative = (_velocity(case, b) - _velocity(case, a)) * case.until
+    relative = (_velocity(case, b) - _velocity(case, a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
     if not case.gravity_vector.any():

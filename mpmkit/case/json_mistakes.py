@@ -70,24 +70,24 @@ def _found(text: str, at: int, said: str) -> tuple[int, str]:
     if word is not None and re.search(r"\d\s*$", before) and "delimiter" in said:
         return (
             here,
-            f"'{word[0][:LONGEST]}' stands behind a number; all are in SI units, and no unit is written",
+            f"'{word[0][:LONGEST]}' follows a number; all numbers are in SI units, do not write the unit",
         )
     if word is not None and said.startswith(("Expecting", "Illegal")):
         return here, _of_word(
             word[0], "property name" in said or text[here + len(word[0]) :].lstrip()[:1] == ":"
         )
     if re.match(r"[-+*/%^]", rest) and re.search(r"\d\s*$", before) and "delimiter" in said:
-        return here, f"'{rest[0]}' stands behind a number; JSON does not calculate: write the result"
+        return here, f"'{rest[0]}' follows a number; JSON does not calculate: write the result"
     if "',' delimiter" in said:
-        return len(before), f"a comma is missing, or a bracket that closes, before {_shown(rest)}"
+        return len(before), f"a comma or a closing bracket is missing before {_shown(rest)}"
     if "':' delimiter" in said:
         return len(before), f"a colon is missing before {_shown(rest)}"
     if said.startswith("Invalid control character"):
         return at, "a text must end on the line on which it begins; a double quote may be missing"
     if said.startswith("Invalid \\"):
-        return at, "a backslash in a text must be written twice; in a path a slash does as well"
+        return at, "a backslash in a text must be written twice; in a path you may use a slash"
     if said.startswith("Unterminated string"):
-        return at, "a text begins that has no double quote at its end"
+        return at, "a text has no double quote at its end"
     if said.startswith("Extra data"):
         return here, f"the object has ended, but there is more: {_shown(rest)}"
     if "property name" in said:

@@ -28,6 +28,9 @@ TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
 MOST_EXAMINED = 100
 """Unknown keys of which each is compared with those that are missing."""
 
+MEASURED = {"diagnostics": "diagnostic", "fields": "particle_field"}
+"""Kinds of the plug-ins of ``output``, by their keys."""
+
 Path = tuple[str | int, ...]
 
 
@@ -47,7 +50,7 @@ def explain(
     schema = _schema(model)
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
-    # A misspelt key is missing under its true name: told of the one, a person needs not hear of the other.
+    # A misspelt key is also missing under its right name: one message is enough.
     true_names = {
         (*c.path[:-1], nearest(c.path[-1], Place(schema, data, c.path[:-1]).keys()))
         for c in unknown[:MOST_EXAMINED]
@@ -162,6 +165,8 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     below = path[2:] if path[0] == "walls" else path  # a wall may have the name of a kind
     anywhere = path[0] in ("scheme", "walls")
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
+    if path[0] == "output":
+        kinds = [MEASURED[key] for key in path[1:2] if key in MEASURED]
     if not kinds or not registry.problems:
         return [], ""
     kind, reasons = str(kinds[0]), []

@@ -23,6 +23,7 @@ from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
 from .base import Model
+from .ending import AnyUntil, latest
 from .faces import Face
 from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
@@ -40,7 +41,7 @@ class Grid(Model):
         "to a whole number of cells",
     )
     faces: dict[str, Face] = Field(
-        default={}, description="condition on each face, such as z_min; a face that is not named is open"
+        default={}, description="condition on each face, such as z_min; default: every face is open"
     )
 
     _extensions: list[str] = PrivateAttr(default_factory=list)
@@ -58,7 +59,7 @@ class Grid(Model):
 class Material(Model):
     """A constitutive law with its parameters, a density and, for a fluid, a sound speed."""
 
-    law: str
+    law: str = Field(description="name of the constitutive law")
     density: float = quantity("kg/m^3", "initial density", gt=0)
     sound_speed: SoundSpeed | None = quantity(
         "m/s", "artificial sound speed, or a factor of √(2 g h), or the largest Mach number", default=None
@@ -102,12 +103,13 @@ ParticleCount = Annotated[int, Field(gt=0, le=1000)]
 class Body(Model):
     """A shape filled with a material."""
 
-    shape: AnyShape
-    material: Material
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = Field(
-        default=None,
-        description="particles in a full cell (a square or cubic number), or their number along each axis; "
+    shape: AnyShape = Field(description="where the body is at the start")
+    material: Material = Field(description="what the body is made of")
+    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
+        "1",
+        "particles in a full cell (a square or cubic number), or their number along each axis; "
         "default: 2 along each axis",
+        default=None,
     )
     velocity: InitialVelocity | None = quantity(
         "m/s", "initial velocity along each axis, or a standing wave; default: at rest", default=None
@@ -151,10 +153,9 @@ class Scheme(Model):
     refinement: Refinement
     splitting: bool = Field(
         default=False,
-        description="whether particles that are drawn out are split: true alone is short for the refinement "
-        "'split'",
+        description="true is short for the refinement 'split', false for 'none'",
     )
-    time_step: TimeStep = TimeStep()
+    time_step: TimeStep = Field(default=TimeStep(), description="how long a step is")
 
     @model_validator(mode="before")
     @classmethod
@@ -178,8 +179,8 @@ class Scheme(Model):
 class Wall(Model):
     """A surface, which may move, and what it allows the material that touches it."""
 
-    surface: Surface
-    contact: Contact
+    surface: Surface = Field(description="where the wall is, and how it moves")
+    contact: Contact = Field(description="what the wall allows the material that touches it")
 
 
 class Case(Model):
@@ -194,26 +195,33 @@ class Case(Model):
             "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
         },
     )
-    description: str = ""
-    space: Literal["3d", "plane-strain", "axisymmetric"]
-    until: float = quantity("s", "simulated time", gt=0)
+    description: str = Field(default="", description="free text about the case")
+    space: Literal["3d", "plane-strain", "axisymmetric"] = Field(
+        description="axes of the scene: x, y, z in 3d; x, z in plane-strain; r, z in axisymmetric"
+    )
+    until: AnyUntil = quantity("s", "simulated time, or conditions that end the run before a time at_most")
     gravity: list[float] | None = quantity(
         "m/s^2", "acceleration along each axis; default: 9.81 down the last axis", default=None
     )
-    grid: Grid
-    bodies: list[Body] = Field(min_length=1)
+    grid: Grid = Field(description="cells, domain and faces")
+    bodies: list[Body] = Field(min_length=1, description="the bodies of material at the start")
     walls: dict[str, Wall] = Field(
         default={},
         description="walls beside the faces of the grid, each with a name of letters, digits, '_' and '-'",
         json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
     )
-    scheme: Scheme
-    output: OutputSettings = OutputSettings()
+    scheme: Scheme = Field(description="the numerical method")
+    output: OutputSettings = Field(default=OutputSettings(), description="what is written, and when")
 
     @property
     def space_(self) -> Space:
         """The space as an object that knows its axes."""
         return SPACES[self.space]
+
+    @property
+    def end(self) -> float:
+        """Time, s, at which the run ends at the latest."""
+        return latest(self.until)
 
     @cached_property
     def domain_bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
-from ..contracts import quantity
+from ..contracts import Diagnostic, ParticleField, quantity
 from ..output.variables import PARTICLE_VARIABLES
 
+NAMED: dict[str, Any] = {"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}}
 ROWS, FRAMES = 400, 20
 """Rows and frames of a run whose case does not say how often."""
 
@@ -43,5 +44,17 @@ class OutputSettings(BaseModel):
     )
     particle_history: list[ParticleFieldName] = Field(
         default=[], description="particle fields kept in every row of the history, by particle number"
+    )
+    diagnostics: dict[str, Diagnostic] = Field(
+        default={},
+        description="what rows of the history hold beside their own variables, each by a name of letters, "
+        "digits, '_' and '-'",
+        json_schema_extra=NAMED,
+    )
+    fields: dict[str, ParticleField] = Field(
+        default={},
+        description="fields of particles in frames, and for particle_history, each by a name of letters, "
+        "digits, '_' and '-'",
+        json_schema_extra=NAMED,
     )
     report: bool = Field(default=True, description="whether pictures are drawn at the end")

@@ -1,4 +1,4 @@
-"""Values that can hardly be meant: a scene in millimetres, a density in g/cm³, a yield stress in kPa.
+"""Values that are probably not in SI units: lengths in millimetres, a density in g/cm³, a stress in kPa.
 
 Nothing is refused. Dimensionless numbers come first; magnitudes are judged only where gravity is that of the
 earth, since scenes of unit density and length, as methods are tested with, have none or one of their own.

@@ -12,8 +12,8 @@ def resolved(case: Case) -> dict[str, Any]:
     """The case with everything filled in that it leaves to a default."""
     data = case.model_dump(mode="json")
     data["gravity"] = case.gravity_vector.tolist()
-    data["output"]["history_interval"] = case.output.history_interval or case.until / ROWS
-    data["output"]["frame_interval"] = case.output.frame_interval or case.until / FRAMES
+    data["output"]["history_interval"] = case.output.history_interval or case.end / ROWS
+    data["output"]["frame_interval"] = case.output.frame_interval or case.end / FRAMES
     for wall in data["walls"].values():
         _fill_base(wall["surface"].get("shape"), case)
     for body, entry in zip(case.bodies, data["bodies"], strict=True):

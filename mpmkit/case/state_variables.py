@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from ..contracts import ConstitutiveLaw
 from ..contracts.law import initial_state
@@ -15,9 +16,22 @@ TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", 
 """Names of what frames and histories hold beside them."""
 
 
-def field_name(law: ConstitutiveLaw, state: str) -> str:
-    """Name of the field of a state variable: its own, or ``<name>_of_<law>`` where that is taken."""
-    return f"{state}_of_{law.name}" if state in TAKEN else state
+def field_name(state: str) -> str:
+    """Name of the field of a state variable."""
+    return f"law.{state}"
+
+
+def former_names(case: Case) -> dict[str, str]:
+    """The names that state variables had in ``particle_history`` up to 0.9, with those that they have now.
+
+    A case that has them stays valid, and its history has them as well.
+    """
+    names = {
+        f"{name}_of_{law.name}" if name in TAKEN else name: field_name(name)
+        for law in laws_of(case)
+        for name in law.state
+    }
+    return {former: name for former, name in names.items() if former not in PARTICLE_VARIABLES}
 
 
 def state_variables(case: Case) -> dict[str, ParticleVariable]:
@@ -35,10 +49,9 @@ def state_variables(case: Case) -> dict[str, ParticleVariable]:
         with blaming_plugins([("law", law)]):
             initial_state(law, 1)  # says what is wrong with a variable, if anything is
         for name, variable in law.state.items():
-            field, size = field_name(law, name), math.prod(variable.shape)
+            field = field_name(name)
             trailing = (f"{field}_component",) if variable.shape else ()
-            shape = (size,) if variable.shape else ()
-            new = ParticleVariable(variable.unit, variable.description, trailing, shape)
+            new = ParticleVariable(variable.unit, variable.description, trailing, flat(variable.shape))
             old = found.setdefault(field, new)
             if (old.units, old.shape) != (new.units, new.shape):
                 raise ValueError(
@@ -46,6 +59,27 @@ def state_variables(case: Case) -> dict[str, ParticleVariable]:
                     "they cannot be in one case"
                 )
     return found
+
+
+def particle_variables(case: Case) -> dict[str, ParticleVariable]:
+    """Every particle field that the history of a case may keep, by each name that it may have."""
+    fields = {
+        name: ParticleVariable(
+            field.unit, field.long_name, (f"{name}_component",) if field.shape else (), flat(field.shape)
+        )
+        for name, field in case.output.fields.items()
+    }
+    states = state_variables(case)
+    former = {
+        name: replace(states[now], trailing=tuple(f"{name}_component" for _ in states[now].trailing))
+        for name, now in former_names(case).items()
+    }
+    return former | states | fields | PARTICLE_VARIABLES
+
+
+def flat(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Lengths of the trailing dimensions of a field of a shape: its components are in one of them."""
+    return (math.prod(shape),) if shape else ()
 
 
 def laws_of(case: Case) -> Iterable[ConstitutiveLaw]:

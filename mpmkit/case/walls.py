@@ -62,7 +62,7 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
             f"{where} is {surface.thickness:g} m thick, less than a cell of {cell:g} m; a wall with room for "
             "material on both sides must be at least a cell thick"
         )
-    fastest = surface.fastest(0.0, case.until)
+    fastest = surface.fastest(0.0, case.end)
     if fastest > MOST_SPEED:
         raise ValueError(f"{where} moves at {fastest:.3g} m/s; it must be at most {MOST_SPEED:g} m/s")
     if not _comes_into_the_domain(surface, case):
@@ -87,7 +87,7 @@ def _leaves_a_plane_of_symmetry(surface: audit.AuditedSurface, case: Case) -> st
         ends = [np.linspace(low, high, FACE_POINTS) for low, high in zip(lower, upper, strict=True)]
         ends[axis] = (lower if inward > 0 else upper)[axis : axis + 1]
         points = np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1).reshape(-1, len(ends))
-        for time in np.linspace(0.0, case.until, FACE_TIMES):
+        for time in np.linspace(0.0, case.end, FACE_TIMES):
             if not surface.present(time) or not surface.fastest(time, time) > 0:
                 continue
             distance, normal = surface.distance(points, time)
@@ -102,12 +102,12 @@ def _comes_into_the_domain(surface: audit.AuditedSurface, case: Case) -> bool:
 
     One that is far away is looked for again when it can have come as far, at the fastest that it will be.
     """
-    time, soon = 0.0, case.until / TIMES
-    while time <= case.until:
-        gap, fastest = _gap(surface, case.domain_bounds, case, time), surface.fastest(time, case.until)
+    time, soon = 0.0, case.end / TIMES
+    while time <= case.end:
+        gap, fastest = _gap(surface, case.domain_bounds, case, time), surface.fastest(time, case.end)
         if gap <= 0 and surface.present(time):
             return True
-        if gap > fastest * (case.until - time):
+        if gap > fastest * (case.end - time):
             return False
         time += max(soon, gap / fastest if fastest > 0 else 0.0)
     return False

@@ -149,7 +149,11 @@ class Display(logging.Handler):
 
     def __call__(self, progress: runner.Progress) -> None:
         lines = _lines(
-            progress.time, progress.until, progress.particle_steps_per_second, progress.seconds_left
+            progress.time,
+            progress.until,
+            progress.particle_steps_per_second,
+            progress.seconds_left,
+            progress.ends_earlier,
         )
         self._until = progress.until
         if self._plot is not None:
@@ -194,10 +198,13 @@ class _Compiling(event.Listener):
         pass
 
 
-def _lines(time: float, until: float, speed: float, seconds_left: float) -> tuple[str, ...]:
+def _lines(
+    time: float, until: float, speed: float, seconds_left: float, ends_earlier: bool = False
+) -> tuple[str, ...]:
     """What stands beside the bar, the longest first: a narrow terminal has room for the last alone."""
-    left = f"{duration(seconds_left)} left"
-    now = f"t = {time:.4g} of {until:g} s"
+    at_most = "at most " if ends_earlier else ""
+    left = f"{at_most}{duration(seconds_left)} left"
+    now = f"t = {time:.4g} of {at_most}{until:g} s"
     return f"{now} · {speed / 1e6:.2f} M particle-steps/s · {left}", f"{now} · {left}", left
 
 

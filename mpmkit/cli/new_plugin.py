@@ -21,6 +21,8 @@ KINDS = [
     "equation_of_state",
     "surface",
     "contact",
+    "diagnostic",
+    "particle_field",
 ]
 
 
@@ -34,7 +36,7 @@ KINDS = [
 )
 @click.option("--out", type=PATH, metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
 def command(name: str, kind: str, out: str | None) -> None:
-    """Write a distribution for a new plug-in NAME, with tests that it passes, to be made one's own."""
+    """Write a distribution for a new plug-in NAME, with tests that pass; replace its equations by yours."""
     from ..registry.scaffold import new_plugin
 
     directory = new_plugin(name, kind, None if out is None else Path(out))

@@ -65,6 +65,8 @@ def command(
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
     directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
     refuse_existing(picture_in(directory), overwrite)  # before hours are spent on it
+    if isinstance(data.get("until"), dict):
+        say("until has conditions: every combination is tried to until.at_most")
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
     rows = []
     for labels, combination in list(combinations(data, chosen)):

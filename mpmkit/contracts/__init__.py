@@ -3,6 +3,7 @@
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
 from .contact import Contact, ContactNodes
+from .diagnostic import Column, Diagnostic, Observed, ParticleField
 from .elastoviscoplastic import ElastoviscoplasticLaw
 from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
@@ -25,16 +26,20 @@ __all__ = [
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
     "Cells",
+    "Column",
     "ConstitutiveLaw",
     "Contact",
     "ContactNodes",
+    "Diagnostic",
     "ElastoviscoplasticLaw",
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
     "Kinematics",
     "Lattice",
+    "Observed",
     "Operations",
+    "ParticleField",
     "PlacedSurface",
     "Plugin",
     "Redistributing",

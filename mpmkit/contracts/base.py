@@ -1,4 +1,4 @@
-"""What every plug-in is: a frozen, validated record of its parameters that knows its name and its source."""
+"""Base of all plug-ins: a frozen, validated record of parameters with a name and a source."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pydantic.json_schema import GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 API_VERSION = 2
-"""Version of the plug-in contracts; it rises where a plug-in must be changed to go on working."""
+"""Version of the plug-in contracts; it increases when plug-ins must be changed to work."""
 OLDEST_API_VERSION = 1
-"""Oldest version whose plug-ins are still used; those of any version that is not supported are reported."""
+"""Oldest version whose plug-ins still work; plug-ins of versions that are not supported are reported."""
 
 
 def quantity(unit: str, description: str = "", **constraints: Any) -> Any:
@@ -55,12 +55,12 @@ class Plugin(BaseModel):
     name: ClassVar[str]
     citation: ClassVar[str]
     api_version: ClassVar[int]
-    """Version of the contracts that it is written for, as a number: so an old plug-in is noticed."""
+    """Version of the contracts for which it is written, so that an old plug-in is noticed."""
     named_by: ClassVar[str] = "name"
-    """Key at which an object in a case names it; a matter of its kind."""
+    """Key that names it in a case file; the same for all plug-ins of a kind."""
 
     def cautions(self, case: Any) -> list[str]:
-        """Sentences on what is known to fail where a case, whose fields are those of case files, uses it."""
+        """Sentences on what is known to fail in the case, whose fields are those of case files."""
         return []
 
     @model_validator(mode="before")

@@ -26,7 +26,7 @@ class ContactNodes:
     wall_velocity: np.ndarray
     """``(k, dim)``, w, m/s."""
     mass: np.ndarray
-    """``(k,)``, kg: what resists a push there."""
+    """``(k,)``, kg: the effective mass for an impulse at this place."""
     velocity: np.ndarray
     """``(k, dim)``, v, m/s, of the material at the wall."""
     inner: np.ndarray
@@ -34,13 +34,13 @@ class ContactNodes:
     depth: np.ndarray
     """``(k,)``, m."""
     touched: np.ndarray
-    """``(k,)``, bool: whether material has reached the wall there. Elsewhere the velocity must be left."""
+    """``(k,)``, bool: whether material has reached the wall there. Elsewhere the velocity must not change."""
     pressed: np.ndarray
     """``(k,)``, m/s: a push beside that of the contact itself, over the mass, for a contact that
     ``counts_push``. It comes from what is mirrored beyond the wall, and from neighbours, which push the same
     nodes; it is below 0 where they take from it. A drag may count on the sum, where that is above 0."""
     memory: dict[str, np.ndarray] = field(default_factory=dict)
-    """``(k,)`` each: what the contact declares, kept with the node from step to step."""
+    """``(k,)`` each: the variables that the contact declares, kept for each node from step to step."""
 
     def slip(self) -> tuple[np.ndarray, np.ndarray]:
         """u_n = (v - w)·n, m/s, ``(k,)``, and u_t = v - w - u_n n, m/s, ``(k, dim)``: material leaves where
@@ -55,7 +55,7 @@ class ContactNodes:
         return relative - _dot(relative, self.normal)[:, None] * self.normal
 
     def stop(self, which: np.ndarray) -> None:
-        """v_n = w_n at nodes ``which`` (True or False): nothing approaches the wall there or leaves it."""
+        """v_n = w_n at nodes ``which`` (True or False): material neither approaches nor leaves."""
         away, _ = self.slip()
         self.velocity[which] -= away[which, None] * self.normal[which]
 
@@ -67,7 +67,7 @@ class ContactNodes:
 class Contact(Plugin):
     """What a wall allows.
 
-    In a case it stands at ``walls.<name>.contact``, by its name or as ``{"kind": name, …parameters}``. It
+    In a case it is at ``walls.<name>.contact``, by its name or as ``{"kind": name, …parameters}``. It
     acts twice in a step. Only the velocity of nodes that are touched may change, and the impulse that the
     wall gives is the mass times that change. It depends on v - w alone, and adds no kinetic energy relative
     to the wall.
@@ -81,9 +81,9 @@ class Contact(Plugin):
     pulls: ClassVar[bool] = False
     """Whether it may hold material that would leave."""
     counts_push: ClassVar[bool] = False
-    """Whether it reads ``pressed`` of its nodes, as a drag in proportion to the push does; zero otherwise."""
+    """Whether it reads ``pressed`` of its nodes, as friction proportional to the push; else that is zero."""
     memory: ClassVar[Mapping[str, StateVariable]] = {}
-    """What it keeps at each node, a number each; nodes begin with ``initial``."""
+    """Variables that it keeps at each node, one number each; they start at ``initial``."""
 
     @abstractmethod
     def mapped(self, nodes: ContactNodes) -> None:

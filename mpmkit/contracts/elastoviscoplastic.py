@@ -16,9 +16,9 @@ from .scale import REST_SHEAR_RATE, Scale
 class ElastoviscoplasticLaw(ConstitutiveLaw):
     """Elastic up to the yield stress, and a fluid with the flow curve tau = f(γ̇) beyond it.
 
-    No regularisation: below the yield stress nothing flows, and the material comes to rest. In series with
-    the flow is an elastic spring, see ``contracts.maxwell``; it leaves steady flow as it is, and its strain,
-    tau0/G, is what the material yields by before it flows.
+    No regularisation: below the yield stress nothing flows, and the material comes to rest. An elastic spring
+    acts in series with the flow, see ``contracts.maxwell``. It does not change steady flow. The material
+    yields at a strain of tau0/G.
     """
 
     shear_modulus: float | None = quantity(
@@ -31,7 +31,7 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
 
     @abstractmethod
     def flow_curve(self, shear_rate: np.ndarray) -> np.ndarray:
-        """Shear stress, Pa, of steady shear at rates ``(n,)``, 1/s, above zero; rising, tau0 at rest."""
+        """Shear stress, Pa, of steady shear at rates ``(n,)``, 1/s, above 0; it must rise; tau0 at rest."""
 
     def relaxed_stress(self, trial: np.ndarray, stiffness: float) -> np.ndarray:
         """tau, ``(n,)``, Pa, of f(γ̇) + stiffness γ̇ = trial, or ``trial`` where that is below yield.
@@ -47,7 +47,7 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         maxwell.relax(kinematics, modulus, dt, stress, self.relaxed_stress)
 
     def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
-        """With G, which stays the same for the whole run, also where the sound speed follows the flow."""
+        """The law with its G, which is constant during the run, also if the sound speed follows the flow."""
         _, flow_stress = scale.flow(self._viscous_stress, density)
         modulus = maxwell.shear_modulus(
             self.shear_modulus, density, sound_speed, self._yield_stress, flow_stress

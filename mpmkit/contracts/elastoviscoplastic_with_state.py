@@ -20,12 +20,12 @@ State = Mapping[str, np.ndarray]
 class ElastoviscoplasticLawWithState(ElastoviscoplasticLaw):
     """As ``ElastoviscoplasticLaw``, tau = f(γ̇, λ), with a state λ that the flow changes: dλ/dt = g(λ, γ̇).
 
-    A thixotropic, an ageing or a hardening material. In a step of Δt, the stress is found with the state of
-    its beginning,
+    For a thixotropic, an ageing or a hardening material. In a step of Δt, the stress is found with the state
+    at the beginning of the step,
 
         f(γ̇, λ) + G Δt γ̇ = τ*,
 
-    and γ̇, the rate of flow (zero below the yield stress), then takes the state to the end of the step.
+    and the plastic shear rate γ̇ (zero below the yield stress) then gives the state at the end of the step.
     """
 
     @abstractmethod
@@ -37,7 +37,7 @@ class ElastoviscoplasticLawWithState(ElastoviscoplasticLaw):
 
     @abstractmethod
     def update_state(self, state: State, shear_rate: np.ndarray, dt: float) -> None:
-        """Write the state at the end of a step of ``dt``, s, into its arrays; it flowed at ``(n,)``, 1/s."""
+        """Write the state at the end of a step of ``dt``, s, into its arrays; shear rates ``(n,)``, 1/s."""
 
     def relaxed_stress_at(self, trial: np.ndarray, stiffness: float, state: State) -> np.ndarray:
         """tau, ``(n,)``, Pa, of f(γ̇, λ) + stiffness γ̇ = trial, or ``trial`` where that is below yield.

@@ -10,7 +10,7 @@ from .base import Plugin
 
 
 class EquationOfState(Plugin):
-    """Pressure of a weakly compressible fluid whose sound speed stands in for incompressibility."""
+    """Pressure of a weakly compressible fluid with an artificial sound speed."""
 
     @abstractmethod
     def pressure(self, volume_ratio: np.ndarray, density: float, sound_speed: float) -> np.ndarray:

@@ -19,13 +19,13 @@ from .scale import REST_SHEAR_RATE, Scale
 class GeneralisedNewtonianLaw(ConstitutiveLaw):
     """A fluid given by its apparent viscosity alone: sigma = -p I + 2 mu(γ̇) (D - tr(D)/3 I).
 
-    This is eq. 6 of Ferreira et al. with the tensor that the printed equation lost, and
+    This is eq. 6 of Ferreira et al., which is printed without the tensor I after tr(D), and
     γ̇ = √(2 D':D') with the deviatoric rate of deformation D'.
 
-    In its ``relaxed`` form the stress follows this through an elastic spring (``contracts.maxwell``). It is
-    then stable at the acoustic step however viscous the fluid, and the same in steady flow; but a change of
-    stress where the viscosity is mu takes mu/G to come through, so that a regularised fluid below its yield
-    stress, where mu is about tau0 m, is elastic for tau0 m/G seconds before it creeps.
+    In the ``relaxed`` form an elastic spring acts in series (``contracts.maxwell``). The acoustic step is
+    then stable for any viscosity, and steady flow is the same. But the stress follows a change with a delay
+    of mu/G. A regularised fluid below its yield stress, where mu is about tau0 m, is elastic for tau0 m/G
+    seconds before it creeps.
     """
 
     form: Literal["explicit", "relaxed"] = Field(
@@ -70,7 +70,7 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         return maxwell.wave_speed(self._modulus(density, speed), density, speed)
 
     def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
-        """In its relaxed form with G, which stays the same for the whole run."""
+        """In the relaxed form, the law with its G, which is constant during the run."""
         if self.form == "explicit":
             return self
         _, flow_stress = scale.flow(self._shear_stress, density)
@@ -84,7 +84,7 @@ class GeneralisedNewtonianLaw(ConstitutiveLaw):
         modulus = self._modulus(density, sound_speed)
         at_rest = self.viscosity_at(REST_SHEAR_RATE)
         return [
-            f"law '{self.name}', relaxed, follows a change of stress within mu/G, at rest "
+            f"law '{self.name}', relaxed, follows a change of stress with a delay of mu/G, at rest "
             f"{at_rest / modulus:.3g} s, G = {modulus:.4g} Pa{maxwell.cost(self, density, sound_speed)}"
         ]
 

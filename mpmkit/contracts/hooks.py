@@ -12,6 +12,7 @@ import pluggy
 
 from .base import Plugin
 from .contact import Contact
+from .diagnostic import Diagnostic, ParticleField
 from .equation_of_state import EquationOfState
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
@@ -77,6 +78,16 @@ def mpmkit_contacts() -> Iterable[type[Contact]]:  # type: ignore[empty-body]
     """Contacts of this module."""
 
 
+@hookspec
+def mpmkit_diagnostics() -> Iterable[type[Diagnostic]]:  # type: ignore[empty-body]
+    """Diagnostics of this module."""
+
+
+@hookspec
+def mpmkit_particle_fields() -> Iterable[type[ParticleField]]:  # type: ignore[empty-body]
+    """Particle fields of this module."""
+
+
 KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
@@ -88,5 +99,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
+    "diagnostic": ("mpmkit_diagnostics", Diagnostic),
+    "particle_field": ("mpmkit_particle_fields", ParticleField),
 }
 """Kind of plug-in: its hook and its contract."""

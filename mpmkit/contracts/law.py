@@ -14,9 +14,8 @@ from .base import Plugin
 from .scale import Scale
 
 LEAST_RATIO, MOST_RATIO = 0.1, 10.0
-"""Volume ratios between which a run is sound, and which a law must bear. At a Mach number of 0.1 that of a
-fluid is within a hundredth of 1; no law here is meant for a solid that is a tenth, or ten times, as large as
-it was."""
+"""Volume ratios between which a run is sound, and for which a law must work. In a fluid at Mach 0.1 the ratio
+is within 1 % of 1."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +28,16 @@ class StateVariable:
     unit: str
     description: str
     shape: tuple[int, ...] = ()
-    """Of its value at one particle; empty for a number."""
+    """Shape of the value at one particle; empty for a number."""
     initial: Any = 0.0
-    """Its value at the beginning: a number, an array of its shape, or the name of a parameter of the law (or
-    of a property of it), so that a case can give it."""
+    """Value at the start: a number, an array of its shape, or the name of a parameter or property of the
+    law, so that a case can give it."""
 
     def at_start(self, law: Plugin | None = None) -> np.ndarray:
-        """The value at the beginning, of its shape.
+        """The value at the start, with its shape.
 
         Args:
-            law: the law, or contact, that declares it; not needed where ``initial`` is no name.
+            law: the law or contact that declares it; not needed if ``initial`` is not a name.
 
         Raises:
             ValueError: there is no such value; the text says what is there and what is allowed.
@@ -62,7 +61,7 @@ class StateVariable:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """What a law is given of the particles that it governs. Tensors are 3 × 3 in every space.
+    """The motion of the particles of a law. Tensors are 3 × 3 in every space.
 
     The components follow the axes of the grid; in two dimensions the third one is out of the plane
     (the hoop direction of an axisymmetric scene).
@@ -73,13 +72,13 @@ class Kinematics:
     volume_ratio: np.ndarray
     """``(n,)``, J, current over initial volume."""
     pressure: np.ndarray
-    """``(n,)``, of the equation of state, positive in compression, Pa; zero for a law that has its own."""
+    """``(n,)``, of the equation of state, positive in compression, Pa; zero for a law with its own."""
     density: float
     """Initial density, kg/m³."""
     deformation_gradient: np.ndarray | None = None
     """``(n, 3, 3)``, F, if the law asks for it."""
     sound_speed: float | None = None
-    """Sound speed of the equation of state, m/s; None for a law that has its own pressure."""
+    """Sound speed of the equation of state, m/s; None for a law that computes its own pressure."""
 
 
 def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:
@@ -101,7 +100,7 @@ def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:
 
 
 class ConstitutiveLaw(Plugin):
-    """A full law: from the motion and its own state to the stress.
+    """A full law: it computes the stress from the motion and from its own state.
 
     The framework adds ``-p I`` of the equation of state, so that a law which uses one returns the extra
     stress alone; a law with ``uses_equation_of_state = False`` returns the whole Cauchy stress.
@@ -112,11 +111,11 @@ class ConstitutiveLaw(Plugin):
     needs_deformation_gradient: ClassVar[bool] = False
     state: ClassVar[Mapping[str, StateVariable]] = {}
     passive: ClassVar[bool] = True
-    """Whether it only stores energy and dissipates it. A law that does work of its own, as one that swells,
-    says False, and the energy of a scene that has it is not guarded."""
+    """Whether it only stores and dissipates energy. False for a law that does work, such as one that swells;
+    the energy guard is then off."""
     exact_form: ClassVar[str | None] = None
-    """Of a regularised law: the name of the one with the same flow curve and an exact yield stress, for
-    ``plan`` to offer."""
+    """For a regularised law: name of the law with the same flow curve and an exact yield stress, which
+    ``plan`` offers."""
 
     @abstractmethod
     def update_stress(
@@ -124,18 +123,18 @@ class ConstitutiveLaw(Plugin):
     ) -> None:
         """Write the stress at the end of the step into ``stress``, ``(n, 6)``, Pa, and update ``state``.
 
-        On entry ``stress`` holds what the law wrote last, in the axes of then; it is zero at the beginning.
+        On entry ``stress`` has the values of the last step, in the axes of that step; zero at the start.
         """
 
     def in_scene(self, density: float, sound_speed: float | None, scale: Scale) -> ConstitutiveLaw:
-        """The law with its open choices made for a scene, once, at the start; as it is by default.
+        """The law that the run uses, with its open parameters chosen for the scene; default: the law itself.
 
-        A run uses what this returns: a law whose elastic modulus is not given chooses it here.
+        Called once, at the start. A law chooses an elastic modulus here that the case does not give.
 
         Args:
             density: initial density, kg/m³.
-            sound_speed: of the equation of state at the start, m/s; None for a law that has its own pressure.
-            scale: how large the scene is, and what drives it.
+            sound_speed: of the equation of state at the start, m/s; None for a law with its own pressure.
+            scale: energy, length and rate of the scene.
         """
         return self
 
@@ -146,10 +145,10 @@ class ConstitutiveLaw(Plugin):
         return sound_speed
 
     def present_wave_speed(self, kinematics: Kinematics, state: Mapping[str, np.ndarray]) -> float:
-        """Fastest wave in the present state, m/s, against the moving material; that of the unstrained one by
-        default.
+        """Fastest wave in the present state, m/s, relative to the material; default: that of the unstrained
+        state.
 
-        A solid that stiffens as it is strained says so here; its steps then shorten with it.
+        A solid whose stiffness grows with strain overrides it; the time step is shortened accordingly.
         """
         return self.wave_speed(kinematics.density, kinematics.sound_speed)
 
@@ -158,18 +157,18 @@ class ConstitutiveLaw(Plugin):
         return 0.0
 
     def remarks(self, density: float, sound_speed: float | None) -> list[str]:
-        """What a user should know of the law in this material: sentences for the log and for ``plan``."""
+        """Sentences for the log and for ``plan`` on the law in this material."""
         return []
 
     def yield_point(self, state: Mapping[str, np.ndarray]) -> np.ndarray | float | None:
         """Shear stress √(s:s/2), Pa, beyond which the material flows, a number or ``(n,)``.
 
-        None for a law without a yield stress. Frames and histories show by it what has yielded.
+        None for a law without a yield stress. Frames and histories use it for ``yielded``.
         """
         return None
 
     def warnings(self, density: float, sound_speed: float | None, scale: Scale, until: float) -> list[str]:
-        """What should not be trusted of this material in a scene that runs for ``until`` s: sentences."""
+        """Sentences on results of this material that are not reliable in a run of ``until`` s."""
         return []
 
     def strain_energy(

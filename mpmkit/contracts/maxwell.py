@@ -5,8 +5,8 @@
 Backward Euler in the flow leaves one scalar equation a particle, f(γ̇) + G Δt γ̇ = τ*, with τ* the shear
 stress of the elastic trial. In steady flow the spring does not matter, τ = f(γ̇) exactly; below a yield stress
 the material is elastic and rests. The viscosity that a step sees is Δτ/Δγ̇ ≤ G Δt, so that the only limit on
-the step is that of the elastic wave, √(c² + 4 G / 3ρ). The price is the strain τ/G, and a delay of μ/G before
-a viscosity μ is felt.
+the step is that of the elastic wave, √(c² + 4 G / 3ρ). The spring adds a strain of τ/G, and a delay of μ/G
+before a viscosity μ acts.
 
 After Saramito, J. Non-Newtonian Fluid Mech. 158 (2009) 154-161, integrated as Simo & Hughes, Computational
 Inelasticity (1998), ch. 2.
@@ -77,7 +77,7 @@ def wave_speed(modulus: float, density: float, sound_speed: float) -> float:
 
 
 def cost(law: ConstitutiveLaw, density: float, sound_speed: float | None) -> str:
-    """End of a sentence that says what the spring costs; nothing where that is little."""
+    """End of a sentence on the cost of the spring; empty if the cost is small."""
     times = law.wave_speed(density, sound_speed) / sound_speed if sound_speed else 1.0
     return f", which makes the steps {times:.2g} times as many" if times > DEAR else ""
 
@@ -91,7 +91,7 @@ def warnings_of_delay(
     viscous_stress: Curve,
     until: float,
 ) -> list[str]:
-    """Sentences where a viscosity μ is felt too late: after μ/G of the spring, μ/(ρ c²) of the sound.
+    """Sentences if a viscosity μ acts too late: after μ/G of the spring, or μ/(ρ c²) of the sound.
 
     Args:
         law: whose name they have.
@@ -134,8 +134,8 @@ def _too_late(
 ) -> str:
     return (
         f"law '{law.name}', with {viscosity:.3g} Pa s here, flows only after mu/{stiffness} = {delay:.2g} s, "
-        f"{100 * delay / until:.2g} % of until; up to a few times that it is {instead}, not a liquid, and "
-        f"its motion is not to be trusted; {remedy}"
+        f"{100 * delay / until:.2g} % of until; for a few times that long it behaves like {instead}, not "
+        f"like a liquid, and its motion is wrong; {remedy}"
     )
 
 

@@ -1,4 +1,4 @@
-"""The named operations of one step: the vocabulary in which orders and velocity updates are written."""
+"""The named operations of one step, with which orders and velocity updates are written."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Operations(Protocol):
         """Update the nodal velocity, v ← v + dt f / m, with the conditions on the faces."""
 
     def map_to_particles(self, dt: float, *, velocity_gradient: bool = False) -> None:
-        """Nodes to particles: velocity, as the velocity update has it, and position.
+        """Nodes to particles: velocity, by the velocity update, and position.
 
         With ``velocity_gradient``, as ``update_velocity_gradient`` at the same time, in one pass.
         """
@@ -65,7 +65,7 @@ class Operations(Protocol):
     def particles_to_nodes(self, values: np.ndarray, weighting: Weighting = "volume") -> np.ndarray:
         """Average of a particle field around each node, Σ w N f / Σ w N: ``(n,)`` to nodes.
 
-        The weight w is the mass or the volume; particles whose law has a pressure of its own have no part in
+        The weight w is the mass or the volume. Particles whose law computes its own pressure are left out of
         averages by volume.
         """
 

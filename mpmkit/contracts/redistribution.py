@@ -1,4 +1,4 @@
-"""Contract of a redistribution: what keeps volume, box and place of the particles the same thing."""
+"""Contract of a redistribution: it keeps volume, box and position of the particles consistent."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Lattice(Protocol):
     """m"""
 
     def crowding(self) -> np.ndarray:
-        """κ_n = Σ size_p N_np / room_n: one where the material is as it should be, less at its surface."""
+        """κ_n = Σ size_p N_np / room_n: 1 inside the material, less at its surface."""
 
     def average(self, values: np.ndarray) -> np.ndarray:
         """Σ size_p N_np f_p / Σ size_p N_np of a particle field; zero where nothing is."""
@@ -67,26 +67,26 @@ class Redistributing(Protocol):
         time: where flow sets in at a stroke, the rate of the moment is not that of all this time."""
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
-        """J ← J factor, for fluids."""
+        """J ← factor J, for fluids only."""
 
     def shift(self, displacement: np.ndarray) -> None:
-        """x ← x + δx, for fluids, no further than walls; v follows by its affine part, momentum is kept."""
+        """x ← x + δx, for fluids only, not beyond walls; v changes by its affine part; Σ m v is kept."""
 
     def weigh(self, factor: np.ndarray) -> None:
-        """Parts of their volumes with which particles enter the internal force from now on."""
+        """Factors of the volumes of the particles in the internal force from now on."""
 
 
 class Redistribution(Plugin):
-    """How volume, box and place of the particles are kept the same as material is sheared for long."""
+    """How volume, box and position of the particles are kept consistent in long shear."""
 
     equal_boxes: ClassVar[bool] = False
     """Whether boxes have equal sides and hold the volume. Otherwise they follow the normal strain, and J is
     drawn to its average as the volumetric treatment asks."""
 
     def is_due(self, shear: float) -> bool:
-        """Whether it is time, by the largest ∫ γ̇ dt, 1, since the last time."""
+        """Whether a redistribution is due, given the largest ∫ γ̇ dt, 1, since the last one."""
         return False
 
     @abstractmethod
     def redistribute(self, ops: Redistributing, time: float) -> None:
-        """Carry out what is due for the ``time``, s, since the last time."""
+        """Redistribute for the ``time``, s, since the last redistribution."""

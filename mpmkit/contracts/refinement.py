@@ -12,7 +12,7 @@ from .base import Plugin
 class Refining(Protocol):
     """What a refinement works on. Arrays have an entry a particle, ``(n,)``, as the particles are now.
 
-    After ``split`` and ``merge`` there are other particles: arrays from before do not fit them any more.
+    After ``split`` and ``merge`` the particles are different: read the arrays again.
     """
 
     dim: int
@@ -59,11 +59,11 @@ class Refining(Protocol):
 
 
 class Refinement(Plugin):
-    """How the number of particles follows the material as it is drawn out and thrown together.
+    """How the number of particles follows the flow.
 
-    Whatever it chooses, the framework carries it out: mass, volume, momentum and centre of mass are kept.
+    The framework carries out the choice and conserves mass, volume, momentum and centre of mass.
     """
 
     def refine(self, ops: Refining) -> None:
-        """Split, cut and merge what is to be; called every few steps. By default nothing ever is."""
+        """Split, cut and merge particles; called every few steps; default: nothing."""
         return

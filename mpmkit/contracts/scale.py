@@ -1,4 +1,4 @@
-"""How large a scene is, and what drives it: what a law may go by in choices that a case leaves open."""
+"""The scales of a scene, from which a law may choose parameters that a case does not give."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ REST_SHEAR_RATE = 1e-12
 class Scale:
     """The scale of a scene at its start.
 
-    Its rate √e/h is the one at which a fluid without viscosity would flow; a stress beyond ρ e has nothing
-    to drive it.
+    √e/h is the shear rate of a flow without viscosity. The scene cannot drive a stress above ρ e.
     """
 
     energy: float
@@ -27,14 +26,13 @@ class Scale:
 
     @property
     def rate(self) -> float:
-        """√e/h, 1/s; zero where nothing drives the scene."""
+        """√e/h, 1/s; zero if nothing drives the scene."""
         return math.sqrt(self.energy) / self.length
 
     def flow(self, viscous_stress: Callable[[np.ndarray], np.ndarray], density: float) -> tuple[float, float]:
-        """Shear rate, 1/s, and viscous stress, Pa, that a material comes to here; zeros where nothing flows.
+        """Shear rate, 1/s, and viscous stress, Pa, of a material in this scene; zeros if nothing flows.
 
-        It flows at √e/h, or, where its viscous stress would then be more than ρ e, at the rate that gives so
-        much.
+        The rate is √e/h, or the rate with a viscous stress of ρ e if that is smaller.
 
         Args:
             viscous_stress: rising stress beyond the yield stress, Pa, at shear rates ``(m,)``, 1/s.

@@ -13,11 +13,11 @@ from .base import Plugin
 class PlacedSurface(Protocol):
     """A surface in its space. Points are in the coordinates of the case file; k of them at once.
 
-    It may also have a ``thickness``, m: of a wall with room for material on both of its sides. One that has
-    none, or None, fills all that is behind its surface.
+    It may also have a ``thickness``, m, if there is room for material on both sides of the wall. Without it,
+    or with None, the wall fills all the space behind its surface.
 
-    It may have ``parts``, a sequence of such surfaces that are together the wall, none of which has an inner
-    edge. A node in an inner edge knows one face of each part: of a wall that is one part, it knows one.
+    It may have ``parts``, a sequence of surfaces without inner edges that form the wall together. A node in
+    an inner edge knows one face of each part.
     """
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
@@ -25,13 +25,13 @@ class PlacedSurface(Protocol):
         time, s.
 
         d > 0 where material may be, d < 0 in the wall; n is the unit normal into the material at the point
-        of the surface that is nearest. Beyond the wall's reach it is any unit vector.
+        of the surface that is nearest. Far from the wall it may be any unit vector.
         """
 
     def velocity(self, x: np.ndarray, t: float) -> np.ndarray:
         """Velocity, m/s, ``(k, dim)``, of the wall's material at the points of the surface nearest to ``x``.
 
-        It may have a part along the surface: a drum that turns stays where it is, and drags.
+        It may have a part along the surface, as of a drum that turns about its axis.
         """
 
     def fastest(self, t0: float, t1: float) -> float:
@@ -44,7 +44,7 @@ class PlacedSurface(Protocol):
 class Surface(Plugin):
     """Where a wall is, and how it moves.
 
-    In a case it stands at ``walls.<name>.surface``, as ``{"kind": name, …parameters}``.
+    In a case it is at ``walls.<name>.surface``, as ``{"kind": name, …parameters}``.
     """
 
     named_by: ClassVar[str] = "kind"
@@ -54,19 +54,19 @@ class Surface(Plugin):
         return None
 
     def placed(self, space: Space) -> PlacedSurface:
-        """The surface in its space, asked for once; the surface itself by default."""
+        """The surface in its space; called once; default: the surface itself."""
         return self
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """See ``PlacedSurface``; needed unless ``placed`` returns something else."""
+        """See ``PlacedSurface``; required if ``placed`` is not overridden."""
         raise NotImplementedError
 
     def velocity(self, x: np.ndarray, t: float) -> np.ndarray:
-        """See ``PlacedSurface``; at rest by default."""
+        """See ``PlacedSurface``; default: at rest."""
         return np.zeros_like(x)
 
     def fastest(self, t0: float, t1: float) -> float:
-        """See ``PlacedSurface``; at rest by default."""
+        """See ``PlacedSurface``; default: at rest."""
         return 0.0
 
     def present(self, t: float) -> bool:

@@ -33,9 +33,7 @@ class Mesh(Shape):
         description="path to a closed surface mesh (STL, OBJ, PLY, or what meshio reads: VTU, ...) of at "
         "most 1 GiB; a relative one starts from the folder of the case file"
     )
-    scale: float = Field(
-        default=1.0, gt=0, description="factor from the file's unit to metres, 0.001 for mm [1]"
-    )
+    scale: float = quantity("1", "factor from the file's unit to metres, 0.001 for mm", default=1.0, gt=0)
     translate: list[float] | None = quantity(
         "m", "shift after scaling; default: none", default=None, min_length=3, max_length=3
     )

@@ -214,8 +214,8 @@ class Rotation(Spell):
 
     kind: Literal["rotation"]
     point: list[float] = quantity("m", "a point of the axis", min_length=2, max_length=3)
-    axis: list[float] | None = Field(
-        default=None, description="direction of the axis, only in 3d [1]", min_length=3, max_length=3
+    axis: list[float] | None = quantity(
+        "1", "direction of the axis, only in 3d", default=None, min_length=3, max_length=3
     )
     rate: float = quantity("rad/s", "angular velocity")
 

@@ -40,9 +40,25 @@ def cached_code(compiler: Callable[..., Callable], *arguments: Any, **options: A
         compiled = compiler(*arguments, **options)(python_function)
         if isinstance(compiled, Dispatcher):  # not so where compilation is switched off
             compiled._cache = KeptCode(compiled)  # type: ignore[attr-defined]
+            compiled.get_call_template = _by_type_alone(compiled)  # type: ignore[method-assign]
         return compiled
 
     return decorate
+
+
+def _by_type_alone(function: Dispatcher) -> Callable:
+    """How other compiled code asks for a function: by the types of the arguments, not by their values.
+
+    numba takes a constant argument for a type of its own, and would compile the function, and all that it
+    calls, once for each value.
+    """
+    by_value = function.get_call_template
+
+    def by_type(arguments: Any, named: Any) -> Any:
+        types = tuple(numba.types.unliteral(given) for given in arguments)
+        return by_value(types, {name: numba.types.unliteral(given) for name, given in named.items()})
+
+    return by_type
 
 
 class KeptCode(NullCache):

@@ -16,8 +16,8 @@ particle whose box overlaps the wall, and such particles lock: see docs/findings
 ``nodes`` is (count, NODE). Nodes that no particle can reach are zero and left out: ``rows`` holds the first
 node and the one after the last of each row that is reached, and ``tasks`` cuts the rows into pieces of about
 equal load. ``mirrors`` lists (ghost, image, node of the wall) of ``PLANES`` planes an axis, each from its
-entry of ``plane_first`` on. Entries of one plane have no node in common, so that they can be handled in
-parallel; images of two planes may be the same nodes. ``faces[a, side]`` is one of the codes below.
+entry of ``plane_first`` on. Entries of one plane have no node in common; images of two planes may be the same
+nodes. ``faces[a, side]`` is one of the codes below.
 
 ``given`` (faces, …) are the sums of what the faces give to the material, in the order of ``faces``; see
 ``face_impulses``, as for ``place`` and ``held``, which have a row for each of ``mirrors``.
@@ -31,11 +31,9 @@ import numpy as np
 from numba import prange
 
 from . import face_impulses
-from .compile import CHUNK, chunk_count, function, inline, kernel
+from .compile import function, inline, kernel
 from .scatter import CONTACT, NODE, PUSHED, TOUCHED
 
-FEW = 1000
-"""Nodes of a plane below which more threads than one are not worth their start."""
 PLANES = 3
 """Planes of ghosts an axis: of its lower face, of its upper face, and the upper face of a periodic axis."""
 OPEN, MIRROR, STICK, PERIODIC, FRICTION, RELEASING_STICK = range(6)
@@ -72,34 +70,21 @@ def clear(nodes, rows, tasks):
                     nodes[i, q] = 0.0
 
 
-@inline()
-def _move(nodes, mirror, acting, first, last, sign, folding):
-    """Slots first..last-1 of a ghost, times ``sign``, onto its image; or back, if not ``folding``.
+@function()
+def _move(nodes, mirrors, acting, first, last, sign, folding):
+    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
 
     With ``acting``, a bit of ``CONTACT``, only if the node between them has it.
     """
-    ghost, image, wall = mirror
-    if not acting or int(nodes[wall, CONTACT]) & acting:
-        for q in range(first, last):
-            if folding:
-                nodes[image, q] += sign[q] * nodes[ghost, q]
-                nodes[ghost, q] = 0.0
-            else:
-                nodes[ghost, q] = sign[q] * nodes[image, q]
-
-
-@function()
-def _move_few(nodes, mirrors, acting, first, last, sign, folding):
     for k in range(len(mirrors)):
-        _move(nodes, mirrors[k], acting, first, last, sign, folding)
-
-
-@kernel()
-def _move_many(nodes, mirrors, acting, first, last, sign, folding):
-    n = len(mirrors)
-    for c in prange(chunk_count(n)):
-        for k in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            _move(nodes, mirrors[k], acting, first, last, sign, folding)
+        ghost, image, wall = mirrors[k]
+        if not acting or int(nodes[wall, CONTACT]) & acting:
+            for q in range(first, last):
+                if folding:
+                    nodes[image, q] += sign[q] * nodes[ghost, q]
+                    nodes[ghost, q] = 0.0
+                else:
+                    nodes[ghost, q] = sign[q] * nodes[image, q]
 
 
 @function()
@@ -117,10 +102,7 @@ def _parity(face, axis, dim, vectors):
 def _reflect_plane(nodes, face, axis, of_plane, dim, first, last, vectors, folding):
     acting = _acting(face, axis) if vectors else 0
     sign = _parity(face, axis, dim, vectors)
-    if len(of_plane) < FEW:
-        _move_few(nodes, of_plane, acting, first, last, sign, folding)
-    else:
-        _move_many(nodes, of_plane, acting, first, last, sign, folding)
+    _move(nodes, of_plane, acting, first, last, sign, folding)
 
 
 @function()

@@ -27,7 +27,7 @@ def section_distance(x, start, end):
     for c in prange(chunk_count(k)):
         for p in range(c * CHUNK, min(k, (c + 1) * CHUNK)):
             nearest, at_corner, inside = np.inf, False, False
-            distance[p] = gradient[p, 0] = gradient[p, 1] = np.nan  # of a point that is none
+            distance[p] = gradient[p, 0] = gradient[p, 1] = np.nan  # of a point that is not a number
             for e in range(len(start)):
                 ax, ay, bx, by = start[e, 0], start[e, 1], end[e, 0], end[e, 1]
                 length = math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)

@@ -118,7 +118,7 @@ def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     if not head.startswith(MAGIC):
         raise Damaged("is none")
     if hashlib.sha256(body).hexdigest().encode() != head[len(MAGIC) :]:
-        raise Damaged("is damaged: its checksum is another")
+        raise Damaged("is damaged: its checksum is wrong")
     try:
         with np.load(io.BytesIO(body), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
@@ -129,4 +129,4 @@ def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         KeyError,
         BadZipFile,
     ) as error:  # ValueError: objects, that would be unpickled
-        raise Damaged("holds what no checkpoint does") from error
+        raise Damaged("has content that no checkpoint has") from error

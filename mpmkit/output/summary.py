@@ -28,7 +28,10 @@ UNITS = {
     "particle_steps_per_second": "1/s",
 }
 """Units of the numbers of a summary."""
-TRUSTED = ("finished", "interrupted", "output-error")
+FINISHED, AT_REST, CONDITION = "finished", "at-rest", "condition"
+ENDED = (FINISHED, AT_REST, CONDITION)
+"""Why a run has come to its end: its time is over, the material is at rest, or a variable is far enough."""
+TRUSTED = (*ENDED, "interrupted", "output-error")
 """Why a run may have ended without its last state being in doubt; any other reason is that of a guard."""
 
 
@@ -57,6 +60,7 @@ def summarise(
     stopped_because: str,
     plugins: Any,
     t500_from_lift: float | None = None,
+    ended_by: str | None = None,
 ) -> dict[str, Any]:
     """The content of ``summary.json``; what never happened, or was not recorded, is None.
 
@@ -73,6 +77,7 @@ def summarise(
         steps: number of steps done.
         wall_time: s.
         stopped_because: why the run ended.
+        ended_by: the condition of the case that ended it, as a sentence.
         plugins: the plug-ins and their versions.
         t500_from_lift: time from the start of the lift of a mould to a spread of 500 mm, s.
     """
@@ -91,6 +96,7 @@ def summarise(
         "wall_time": wall_time,
         "particle_steps_per_second": particle_steps / wall_time if wall_time > 0 else None,
         "stopped_because": stopped_because,
+        "ended_by": ended_by,
         "plugins": plugins,
         "units": UNITS,
     }

@@ -180,7 +180,7 @@ def _sounds(case: Case) -> Iterator[tuple[str, str, Changes]]:
     }
     if faster and falls <= of_height / FACTOR:
         changes = {f"bodies.{index}.material.sound_speed": {"factor": FACTOR} for index in faster}
-        yield f"c = {FACTOR:g} √(2 g h)", "at a Mach number of 0.1 at the most", changes
+        yield f"c = {FACTOR:g} √(2 g h)", "at a Mach number of at most 0.1", changes
     followed = [
         b.material.sound_speed for b in case.bodies if getattr(b.material.sound_speed, "mach", 0) >= MACH
     ]

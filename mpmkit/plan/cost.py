@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..case.ending import ending
 from ..case.forewarnings import forewarnings
 from ..case.model import Case
 from ..case.plugins import cautions
@@ -84,13 +85,13 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings = [*cautions(case), *forewarnings(case), *simulation.warnings()]
     remarks = simulation.remarks()
-    if not math.isfinite(case.until / step):
-        raise CaseError(
-            f"until is {case.until:g} s; in steps of {step:.3g} s that is more than can be counted"
-        )
+    if (end := ending(case.until)) is not None:
+        remarks.append(f"{end}: steps, memory and time are those of a run to that time")
+    if not math.isfinite(case.end / step):
+        raise CaseError(f"until is {case.end:g} s; in steps of {step:.3g} s that is more than can be counted")
     start = trial(simulation)
-    growth = _growth(simulation, case.until / step * start.step)
-    steps = math.ceil(case.until / step * growth.steps)
+    growth = _growth(simulation, case.end / step * start.step)
+    steps = math.ceil(case.end / step * growth.steps)
     at_end = round(particles * growth.last_particles)
     return {
         "particles": particles,
@@ -103,7 +104,7 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
-        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.until / steps),
+        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.end / steps),
         "remarks": [*case.grid.extensions, *remarks],
         "warnings": warnings + start.stopped,
     }

@@ -82,13 +82,13 @@ def pilot(case: Case, seconds: float) -> Growth | None:
     parts = PartClock(simulation)
     wider, walls = coarse.grid.cell_size / case.grid.cell_size, 0.0
     try:
-        while simulation.time < coarse.until and clock.perf_counter() - begin < seconds:
-            simulation.advance(coarse.until - simulation.time)
+        while simulation.time < coarse.end and clock.perf_counter() - begin < seconds:
+            simulation.advance(coarse.end - simulation.time)
             walls += load(simulation, wider)
     except PluginStop:
         raise
     except MpmkitError:
-        if simulation.time < coarse.until / 2:
+        if simulation.time < coarse.end / 2:
             return None
     taken = clock.perf_counter() - begin
     steps = simulation.steps - start_steps

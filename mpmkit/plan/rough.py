@@ -28,4 +28,4 @@ def rough_seconds(case: Case, threads: int = 1) -> float:
     particles = expected_particles(case)
     if not step > 0:
         return math.inf
-    return case.until / step * (STEP + particles / RATE[case.space_.dim] / threads)
+    return case.end / step * (STEP + particles / RATE[case.space_.dim] / threads)

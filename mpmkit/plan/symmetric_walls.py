@@ -60,7 +60,7 @@ def _same(case: Case, other: Case, place: Map, vector: Map) -> bool:
         return all(
             _alike(here, there, case, time, place, vector)
             for here, there in pairs
-            for time in _moments(here, case.until)
+            for time in _moments(here, case.end)
         )
 
 
@@ -89,5 +89,5 @@ def _alike(
     return (
         here.present(time) == there.present(time)
         and apart <= ROUNDING * float((upper - lower).max())
-        and off <= ROUNDING * here.fastest(0.0, case.until)
+        and off <= ROUNDING * here.fastest(0.0, case.end)
     )

@@ -52,7 +52,7 @@ def trial(simulation: Simulation) -> Trial:
     begin = clock.perf_counter()
     try:
         while not taken or (
-            clock.perf_counter() - begin < TRIAL_SECONDS and simulation.time < simulation.case.until
+            clock.perf_counter() - begin < TRIAL_SECONDS and simulation.time < simulation.case.end
         ):
             start, before = clock.perf_counter(), parts.seconds
             simulation.advance()

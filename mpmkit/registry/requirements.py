@@ -12,6 +12,7 @@ from ..contracts import (
     OLDEST_API_VERSION,
     ConstitutiveLaw,
     Contact,
+    ParticleField,
     Plugin,
     ShapeFunction,
     StateVariable,
@@ -52,6 +53,8 @@ def check(plugin: type[Plugin], kind: str) -> None:
         )
     if issubclass(plugin, ConstitutiveLaw):
         _check_variables(plugin, "state", plugin.state)
+    if issubclass(plugin, ParticleField):
+        _check_field(plugin)
     if issubclass(plugin, Contact):
         _check_variables(plugin, "memory", plugin.memory)
         for name, variable in plugin.memory.items():
@@ -60,6 +63,15 @@ def check(plugin: type[Plugin], kind: str) -> None:
                     f"its memory '{name}' has the shape {variable.shape}; it must be a number at each node"
                 )
     plugin.model_json_schema()  # a parameter that has none would break the schema of all
+
+
+def _check_field(plugin: type[ParticleField]) -> None:
+    for attribute in ("unit", "long_name"):
+        if not isinstance(getattr(plugin, attribute, None), str):
+            raise TypeError(f"{plugin.__name__} has no '{attribute}'")
+    shape = plugin.shape
+    if not isinstance(shape, tuple) or not all(type(side) is int and side > 0 for side in shape):
+        raise ValueError(f"its shape is {shape!r}; it must be (), or whole numbers above 0 such as (3,)")
 
 
 def _check_version(plugin: type[Plugin]) -> None:

@@ -28,6 +28,8 @@ KINDS = {
     "equation_of_state": "equation of state",
     "surface": "surface",
     "contact": "contact",
+    "diagnostic": "diagnostic",
+    "particle_field": "particle field",
 }
 """Kinds of plug-ins that there are templates for, and what they are called."""
 PREFIX = "mpmkit-"

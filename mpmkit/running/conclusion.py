@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+from ..case.ending import conditions, latest
 from ..errors import reason
 from ..output import summarise, write_json
 from ..output.log import RECORD
-from ..output.summary import UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
+from ..output.summary import FINISHED, UNITS, lifted_later, numbers, state_at_end, trusted_to_the_end
 from ..solver import density_watch
 from ..solver.simulation import Simulation
 from .lift import from_lift, lift_start
@@ -19,7 +20,7 @@ LOGGER = logging.getLogger("mpmkit")
 FRACTURED = 0.05
 """Part of the volume drawn apart that is worth a warning."""
 CREATED = 0.02
-"""Energy of solids that came from nowhere, over what there was, that is worth a warning."""
+"""Created energy of solids, relative to the available energy, above which a warning is given."""
 
 
 def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
@@ -79,14 +80,21 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
         steps=simulation.steps,
         wall_time=wall_time,
         stopped_because=ended,
+        ended_by=recorder.ending.why or None,
         plugins=plugins_used(simulation.case),
     )
     attributes |= numbers(summary)
-    state = state_at_end(summary)
+    said = [sentence for sentence in (summary["ended_by"], state_at_end(summary)) if sentence is not None]
     LOGGER.info(
         "%s after %d steps, t = %.6g s%s",
-        ended, simulation.steps, simulation.time, "" if state is None else f"; {state}",
+        ended, simulation.steps, simulation.time, "".join(f"; {sentence}" for sentence in said),
     )  # fmt: skip
+    until = simulation.case.until
+    if ended == FINISHED and conditions(until):
+        LOGGER.warning(
+            "the run has come to until.at_most, %g s, before %s",
+            latest(until), " or ".join(conditions(until)),
+        )  # fmt: skip
     found = [
         f"{name} = {summary[name]:.6g} {unit}".removesuffix(" 1")
         for name, unit in UNITS.items()
@@ -105,7 +113,7 @@ def _warn_of_fracture(simulation: Simulation) -> None:
     fractured = simulation.measures.fractured(simulation.particles)
     if fractured > FRACTURED and not simulation.refiner.acts:
         LOGGER.warning(
-            "at the end %.0f %% of the volume is in particles that are drawn apart further than a cell "
+            "at the end %.0f %% of the volume is in particles that are more than a cell apart "
             "(fractured_fraction): set scheme.refinement to 'split-and-merge'",
             100 * fractured,
         )
@@ -115,8 +123,8 @@ def _warn_of_energy(simulation: Simulation) -> None:
     balance = simulation.guards.balance
     if balance is not None and balance.solid and balance.most_excess > CREATED:
         LOGGER.warning(
-            "up to %.3g %% of the energy came from nowhere: the motion of the solid is not to be trusted any "
-            "better; order 'usl' takes energy instead, and a shorter step makes less of it",
+            "up to %.3g %% of energy was created: the motion of the solid is not more accurate than that; "
+            "a shorter step creates less, and order 'usl' dissipates energy instead",
             100 * balance.most_excess,
         )
 

@@ -8,10 +8,12 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..case.ending import conditions
 from ..case.forewarnings import forewarnings
 from ..case.plugins import cautions, plugins_of
 from ..errors import GuardStop, Interrupted, OutputError, reason
 from ..output.checkpoints import Checkpoints
+from ..output.summary import FINISHED
 from ..registry.blame import blaming_plugins
 from ..solver.density_watch import warning
 from ..solver.simulation import Simulation
@@ -35,6 +37,9 @@ class Progress:
 
     time: float
     until: float
+    """s, the end of the run, at the latest"""
+    ends_earlier: bool
+    """whether it may end before"""
     steps: int
     particle_steps_per_second: float
     seconds_left: float
@@ -69,7 +74,7 @@ def execute(
         with held_interrupts() as interrupted:
             with blaming_plugins(plugins_of(simulation.case), lambda: (simulation.steps, simulation.time)):
                 _advance(recorder, watch, listen, saver, interrupted)
-            conclude(recorder, "finished", watch.elapsed)
+            conclude(recorder, recorder.ending.ended or FINISHED, watch.elapsed)
             if saver is not None:
                 saver.keep_last()
             return interrupted()
@@ -122,8 +127,9 @@ def _announce(simulation: Simulation, threads: int) -> None:
 
 def _first_step(recorder: Recorder, saver: Saver | None) -> None:
     """It loads or compiles the kernels, and is no part of the wall time; an interrupt ends it at once."""
-    recorder.record()
-    _step(recorder, saver)
+    if not _over(recorder):  # as a run is whose last checkpoint is of its last step
+        recorder.record()
+        _step(recorder, saver)
 
 
 def _advance(
@@ -136,7 +142,7 @@ def _advance(
     simulation = recorder.simulation
     told = clock.monotonic()
     warned = warned_of_density = False
-    while not _over(simulation):
+    while not _over(recorder):
         if interrupted():
             raise _HeldInterrupt
         if saver is not None:
@@ -161,9 +167,9 @@ def _advance(
         listen(_progress(simulation, watch.elapsed))
 
 
-def _over(simulation: Simulation) -> bool:
-    until = simulation.case.until
-    return not until - simulation.time > 1e-9 * until
+def _over(recorder: Recorder) -> bool:
+    time, end = recorder.simulation.time, recorder.simulation.case.end
+    return bool(recorder.ending.ended) or not end - time > 1e-9 * end
 
 
 def _step(recorder: Recorder, saver: Saver | None) -> None:
@@ -173,18 +179,19 @@ def _step(recorder: Recorder, saver: Saver | None) -> None:
     """
     simulation = recorder.simulation
     simulation.prepare()
-    left = simulation.case.until - simulation.time
+    left = simulation.case.end - simulation.time
     cut = simulation.time_step > left
     if cut and saver is not None and simulation.steps > 0:
         saver.save_if_possible()
     simulation.advance(left)
     recorder.record()
-    if not cut and saver is not None and _over(simulation):
+    if not cut and saver is not None and _over(recorder):
         saver.save_if_possible()
 
 
 def _progress(simulation: Simulation, elapsed: float) -> Progress:
-    until = simulation.case.until
-    done = simulation.time / until
+    end = simulation.case.end
+    done = simulation.time / end
     speed = simulation.particle_steps / elapsed
-    return Progress(simulation.time, until, simulation.steps, speed, elapsed * (1 - done) / done)
+    earlier, left = bool(conditions(simulation.case.until)), elapsed * (1 - done) / done
+    return Progress(simulation.time, end, earlier, simulation.steps, speed, left)

@@ -34,7 +34,7 @@ class FlowRecord:
 
     def __init__(self, simulation: Simulation) -> None:
         self._height = simulation.case.height
-        self._until = simulation.case.until
+        self._until = simulation.case.end
         self._share = 1.0
         self._last = -1
         """step of the last moment"""

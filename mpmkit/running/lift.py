@@ -27,9 +27,9 @@ def lift_start(case: Case) -> float | None:
         def has_moved(time: float) -> bool:
             return any(surface.fastest(0.0, time) > 0 for surface in surfaces)
 
-        if not has_moved(case.until):
+        if not has_moved(case.end):
             return None
-        before, after = 0.0, 0.0 if has_moved(0.0) else case.until
+        before, after = 0.0, 0.0 if has_moved(0.0) else case.end
         for _ in range(HALVINGS):
             middle = (before + after) / 2
             before, after = (before, middle) if has_moved(middle) else (middle, after)

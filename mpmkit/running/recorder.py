@@ -6,48 +6,20 @@ from typing import Any
 
 import numpy as np
 
+from ..case.diagnostics import diagnostic_columns
 from ..case.output import FRAMES, ROWS
-from ..case.state_variables import state_variables
-from ..output import PARTICLE_VARIABLES, FrameWriter, History, RunDirectory, Variable
+from ..case.state_variables import particle_variables
+from ..output import FrameWriter, History, RunDirectory
+from ..output.columns import COLUMNS, wall_columns
 from ..output.flow import arrays_of, write_flow
 from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
+from .ending import Ending
 from .flow_record import LOOKS, FlowRecord
 from .milestones import Milestones
 from .schedule import Schedule
 from .wall_frames import WallFrames
-
-COLUMNS = (
-    Variable("spread_diameter", "m", "spread diameter"),
-    Variable("height", "m", "largest height"),
-    Variable("axis_height", "m", "height on the axis"),
-    Variable("slump", "m", "slump"),
-    Variable("kinetic_energy", "J", "kinetic energy"),
-    Variable("potential_energy", "J", "potential energy"),
-    Variable("strain_energy", "J", "elastic energy"),
-    Variable("compressive_energy", "J", "compressive energy"),
-    Variable("total_mass", "kg", "total mass"),
-    Variable("momentum", "kg m/s", "momentum", component=True),
-    Variable("max_speed", "m/s", "largest speed"),
-    Variable("fractured_fraction", "1", "part of the volume in boxes longer than a cell"),
-    Variable("density_mean", "1", "nodal density over the material's, mean over the interior"),
-    Variable("density_worst", "1", "nodal density over the material's, where the interior departs most"),
-    Variable("redistribution_energy", "J", "energy put in by the redistribution"),
-    Variable("time_step", "s", "time step"),
-    Variable("mach_number", "1", "largest speed over the sound speed"),
-)
-"""The scalars and vectors of every history; docs/cases.md defines each. The long names label plots."""
-
-
-def wall_columns(axes: tuple[str, ...]) -> tuple[Variable, ...]:
-    """The columns of the walls; a torque is about the axes of 3-D, or about the one out of the plane."""
-    about = axes if len(axes) == 3 else ("t" if axes[0] == "r" else "y",)
-    return (
-        Variable("wall_force", "N", "force of the wall on the material", component=True, of_walls=True),
-        Variable("wall_torque", "N m", "torque of the wall about the origin", of_walls=True, about=about),
-        Variable("wall_power", "W", "power that the wall gives to the material", of_walls=True),
-    )
 
 
 class Recorder:
@@ -71,26 +43,28 @@ class Recorder:
             goes_on: whether ``restore`` is called next, so that the frames that are there stay until then.
         """
         case = simulation.case
-        settings, until = case.output, case.until
+        settings, end = case.output, case.end
         self.simulation = simulation
         self.directory = directory
-        variables = PARTICLE_VARIABLES | state_variables(case)
+        variables = particle_variables(case)
         axes, walls = case.space_.axes, simulation.wall_names
-        columns = COLUMNS + (wall_columns(axes) if walls else ())
+        columns = (*COLUMNS, *diagnostic_columns(case), *(wall_columns(axes) if walls else ()))
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self.wall_frames = None if directory is None else WallFrames(case, directory.frames, goes_on)
         self.flow = FlowRecord(simulation) if directory is not None and settings.report else None
-        self._rows_due = Schedule(settings.history_interval or until / ROWS, until)
-        self._frames_due = Schedule(settings.frame_interval or until / FRAMES, until, settings.snapshot_times)
-        self._flow_due = Schedule(until / LOOKS, until, settings.snapshot_times)
+        self._rows_due = Schedule(settings.history_interval or end / ROWS, end)
+        self._frames_due = Schedule(settings.frame_interval or end / FRAMES, end, settings.snapshot_times)
+        self._flow_due = Schedule(end / LOOKS, end, settings.snapshot_times)
         self.milestones = Milestones(simulation)
+        self.ending = Ending(simulation, self.milestones)
         self._last_row = self._last_frame = -1  # steps
 
     def record(self) -> None:
-        """Add a row, and a frame, where one is due, and look for milestones."""
+        """Add a row, and a frame, where one is due, and look for milestones and for the end."""
         self.milestones.watch()
+        self.ending.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
         if self._rows_due.passed(now):
             self.add_last_row()
@@ -105,6 +79,7 @@ class Recorder:
         found: dict[str, Stateful] = {
             "history": self.history,
             "milestones": self.milestones,
+            "ending": self.ending,
             "rows_due": self._rows_due,
             "frames_due": self._frames_due,
             "flow_due": self._flow_due,
@@ -151,14 +126,11 @@ class Recorder:
 
     def _add_row(self) -> None:
         simulation, particles = self.simulation, self.simulation.particles
-        values = simulation.measures(particles) | {
-            "redistribution_energy": simulation.redistribution_energy,
-            "time_step": simulation.time_step,
-            "mach_number": simulation.mach_number,
-        }
+        values = simulation.measured()
         if simulation.wall_names:
             values |= self._wall_means()
-        kept = history_fields(particles, simulation.grid, simulation.case.output.particle_history)
+        with simulation.blaming:
+            kept = history_fields(simulation)
         fields = {name: _by_number(field, particles.number) for name, field in kept.items()}
         self.history.record(simulation.time, values, fields)
         self._last_row = simulation.steps
@@ -179,7 +151,9 @@ class Recorder:
         assert self.wall_frames is not None
         simulation, particles = self.simulation, self.simulation.particles
         position = particles.position + simulation.grid.lower
-        self.frames.write(simulation.time, simulation.steps, frame_fields(particles), position)
+        with simulation.blaming:
+            fields = frame_fields(simulation)
+        self.frames.write(simulation.time, simulation.steps, fields, position)
         with simulation.blaming:
             self.wall_frames.add(simulation.time, simulation.steps)
         self._last_frame = simulation.steps

@@ -12,6 +12,7 @@ from ..case.model import Case
 from ..errors import CaseError
 from ..output import RunDirectory
 from ..output.netcdf import read_dataset
+from ..output.summary import ENDED
 from .case_files import portable
 from .provenance import attributes
 from .resume import differences
@@ -58,7 +59,7 @@ def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | Non
     Of a run that did not finish, the rows that both have are compared, but for the last: it is of the step
     at which the run was stopped.
     """
-    finished = all(h.attrs.get("stopped_because") == "finished" for h in (before, after))
+    finished = all(h.attrs.get("stopped_because") in ENDED for h in (before, after))
     rows = min(before.sizes["time"], after.sizes["time"]) - (0 if finished else 1)
     if finished and before.sizes["time"] != after.sizes["time"]:
         return f"there were {before.sizes['time']} rows and are {after.sizes['time']}"

@@ -11,12 +11,14 @@ import numba
 import numpy as np
 
 from ..case import load_case
+from ..case.ending import conditions
 from ..case.model import Case
 from ..errors import CaseError
 from ..output import RunDirectory
 from ..output.checkpoints import Checkpoints
 from ..output.copies import Copies
 from ..output.near_runs import why_no_run
+from ..output.summary import ENDED, FINISHED
 from ..version import __version__
 from .case_files import named_files, portable
 from .provenance import plugins_used
@@ -80,21 +82,31 @@ def case_of(directory: Path) -> Case:
 def for_longer(case: Case, until: float | None, directory: Path) -> Case:
     """The case of a run with a later end; None leaves it as it is.
 
+    A time takes the place of conditions: the run then goes on to it, whatever would have ended it before.
+
     Raises:
         CaseError: the end is earlier, or not a number.
     """
     if until is None:
         return case
-    if not case.until <= until < math.inf:
+    ended = case.end if not conditions(case.until) else _simulated_time(RunDirectory(directory))
+    if not ended <= until < math.inf:
         raise CaseError(
-            f"until is {until:g} s; the run in '{directory}' ends at {case.until:g} s, "
+            f"until is {until:g} s; the run in '{directory}' ends at {ended:g} s, "
             "and can only go on to a later time"
         )
     return load_case(RunDirectory(directory).case, [f"until={until!r}"])
 
 
-def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def last_checkpoint(
+    directory: Path, before: Case, case: Case
+) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """The state in the last whole checkpoint of a run, and the identity of the run that goes on from it.
+
+    Args:
+        directory: of the run.
+        before: its case.
+        case: the same case, whose end may be later.
 
     Raises:
         CaseError: there is none, or it is of another case or of other versions; says what differs. A later
@@ -102,27 +114,43 @@ def last_checkpoint(directory: Path, case: Case) -> tuple[dict[str, np.ndarray],
     """
     files = RunDirectory(directory)
     checkpoints = Checkpoints(files.checkpoints)
-    if _has_finished(files, case.until):
+    if _has_finished(files, before, case):
+        ended = _simulated_time(files) if conditions(case.until) else case.end
         raise CaseError(
             f"the run in '{directory}' has finished: there is nothing to go on with; "
-            f"--until T with a T above {case.until:g} s makes it longer"
+            f"--until T with a T above {ended:g} s makes it longer"
         )
     state, words = checkpoints.newest()
-    before, now = words["identity"], identity(case)
-    found = differences(before | {"case": None}, now | {"case": None})
-    ended = before["case"] if before["case"]["until"] > case.until else before["case"] | {"until": case.until}
+    saved, now = words["identity"], identity(case)
+    found = differences(saved | {"case": None}, now | {"case": None})
+    conditional = isinstance(saved["case"]["until"], dict)
+    earlier = float(state["simulation/time"]) > case.end if conditional else saved["case"]["until"] > case.end
+    ended = saved["case"] if earlier else saved["case"] | {"until": now["case"]["until"]}
     found += [f"case.{sentence}" for sentence in other_case(ended, case)]
     if found:
         more = f", and {len(found) - 1} more" if len(found) > 1 else ""
         raise CaseError(
-            f"the run in '{directory}' cannot go on, since it would be another one: {found[0]}{more}"
+            f"the run in '{directory}' cannot go on, because it would be a different run: {found[0]}{more}"
         )
     return state, now
 
 
-def _has_finished(files: RunDirectory, until: float) -> bool:
+def _has_finished(files: RunDirectory, before: Case, case: Case) -> bool:
+    summary = _summary(files)
+    if summary.get("stopped_because") == FINISHED:
+        return _simulated_time(files) > case.end * AT_THE_END
+    return summary.get("stopped_because") in ENDED and before.until == case.until
+
+
+def _simulated_time(files: RunDirectory) -> float:
+    """The time, s, to which a run has come; 0 if it does not say."""
+    time = _summary(files).get("simulated_time")
+    return float(time) if isinstance(time, int | float) else 0.0
+
+
+def _summary(files: RunDirectory) -> dict[str, Any]:
     try:
         summary = json.loads(files.summary.read_text(encoding="utf-8"))
-        return summary["stopped_because"] == "finished" and summary["simulated_time"] > until * AT_THE_END
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+    except (OSError, ValueError):
+        return {}
+    return summary if isinstance(summary, dict) else {}

@@ -50,7 +50,7 @@ def run(
         case: a validated case.
         out: run directory to write; nothing is written without one.
         overwrite: whether an earlier run in ``out`` may be replaced.
-        threads: threads to use; default: as many as pay off.
+        threads: threads to use; default: as many as make the run faster.
         listen: called with the progress a few times a second.
         checkpoint_every: wall time, s, between two checkpoints in ``out``, from which ``resume`` goes on; one
             is written on Ctrl-C, and one before the last step, in any case.
@@ -58,14 +58,14 @@ def run(
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
         the fields named in ``output.particle_history``. Its attributes hold the numbers of the summary, such
-        as ``t500``, s, and ``final_spread``, m; what never happened is not a number there.
+        as ``t500``, s, and ``final_spread``, m; NaN for what never happened.
 
     Raises:
         CaseError: the case cannot be run as it stands.
-        GuardStop: the run diverged, or a plug-in raised an exception; everything up to then is in the run
+        GuardStop: the run diverged, or a plug-in raised an exception; the results up to then are in the run
             directory.
         OutputError: the run directory cannot be written, or another run is writing it.
-        MpmkitError: this process was forked from one in which there was a run before.
+        MpmkitError: this process was forked from a process that had run a case.
     """
     require_threads()
     require_memory(case)
@@ -121,7 +121,7 @@ def resume(
 
     Args:
         directory: of the run.
-        case: what the caller takes the case to be; default: that of the directory.
+        case: the case that the run must have; default: not checked.
         until: a later end, s, also of a run that has finished; default: that of the case. Rows and frames
             keep the intervals that they had.
         threads, listen, checkpoint_every: as for ``run``.
@@ -145,7 +145,7 @@ def resume(
     require_memory(found)
     files = RunDirectory(path)
     with files.claimed(resume=True):
-        state, identity_ = last_checkpoint(path, found)
+        state, identity_ = last_checkpoint(path, before, found)
         with open_log(files.log):
             with blaming_plugins(plugins_of(found)):
                 simulation = Simulation(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..case.ending import ending
 from ..case.faces import Stick
 from ..case.model import Case, Face
 from .lift import lift_start
@@ -9,15 +10,21 @@ from .wall_words import wall_sentences
 
 FLOORS = {
     "slip": "free slip, so that it does not hold the material back",
-    "symmetry": "a plane of symmetry, which is as free slip",
+    "symmetry": "a plane of symmetry, which acts like free slip",
     "stick": "stick, so that the material does not slide on it",
 }
 """What a face means as a floor, in words."""
 
 
 def setting(case: Case) -> list[str]:
-    """Sentences on the domain, on the floor, on the release of the material, and on the walls."""
-    return [*case.grid.extensions, *_floor_and_release(case), *wall_sentences(case)]
+    """Sentences on the domain, the floor, the release of the material, the walls, and the end."""
+    end = ending(case.until)
+    return [
+        *case.grid.extensions,
+        *_floor_and_release(case),
+        *wall_sentences(case),
+        *([] if end is None else [end]),
+    ]
 
 
 def _floor_and_release(case: Case) -> list[str]:

@@ -59,9 +59,9 @@ def _unit(plugin: Plugin, key: str) -> str:
 
 
 def _motion(wall: Wall, case: Case) -> str:
-    """How a wall moves; of a motion that is none of the framework's, how fast it gets."""
+    """How a wall moves; for a motion of a plug-in, its largest speed."""
     motion = getattr(wall.surface, "motion", None)
     if isinstance(motion, Motion):
         return motion.in_words(case.space_.axes)
-    fastest = audit.placed(wall.surface, case.space_).fastest(0.0, case.until)
+    fastest = audit.placed(wall.surface, case.space_).fastest(0.0, case.end)
     return f"moves at up to {fastest:.3g} m/s" if fastest > 0 else "at rest"

@@ -13,7 +13,7 @@ from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
 CREATED = 0.2
-"""Energy from nowhere, over the energy that the scene had to move with, that is not taken for long."""
+"""Created energy, relative to the energy that the scene had to move, that stops a run after some checks."""
 CREATED_BY_IMPACT = 0.02
 """The same after a hard impact where all materials are solids: nothing pushes their particles apart, which
 takes energy from nowhere. What update orders create in slower motion is told at the end, and not stopped:

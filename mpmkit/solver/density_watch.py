@@ -62,9 +62,9 @@ class DensityWatch:
 def warning(scene: SceneView, watch: DensityWatch) -> str:
     """The sentence of what has been noted so far."""
     return (
-        f"inside the material the density is off by up to {100 * watch.most:.2g} % on average, since "
-        f"t = {watch.since:.4g} s (history: density_mean, density_worst): places and volumes of the "
-        f"particles no longer say the same, so that flow and height become wrong; {cure(scene)}"
+        f"inside the material the density is wrong by up to {100 * watch.most:.2g} % on average, since "
+        f"t = {watch.since:.4g} s (history: density_mean, density_worst): positions and volumes "
+        f"of the particles contradict each other, so flow and height become wrong; {cure(scene)}"
     )
 
 
@@ -72,5 +72,5 @@ def cure(scene: SceneView) -> str:
     """What keeps the particles of a scene even, in words."""
     fluid = any(group.law.uses_equation_of_state for group in scene.particles.groups)
     if fluid and not redistributes(scene.case.scheme.redistribution):
-        return "scheme.redistribution 'even' keeps them the same"
-    return "smaller cells or more particles_per_cell may keep them the same"
+        return "scheme.redistribution 'even' keeps them consistent"
+    return "smaller cells or more particles_per_cell may keep them consistent"

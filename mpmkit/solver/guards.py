@@ -76,8 +76,8 @@ class Guards:
     def check(self) -> None:
         """Raise GuardStop where the run is beyond saving.
 
-        That is: a particle is unsound, mass got lost, energy came from nowhere, or places and volumes of the
-        particles no longer say the same.
+        That is: a particle is unsound, mass is missing, energy was created, or positions and volumes of the
+        particles contradict each other.
 
         Raises:
             PluginFault: mass got lost because a shape function's weights do not sum to one.
@@ -131,15 +131,19 @@ class Guards:
                     p.mass[group.part] / (group.density * p.initial_volume[group.part]) - 1
                 )
             worst = int(np.argmax(off))
-            what = f"has {p.mass[worst]:.4g} kg, {found}, where they had {self._mass:.9g} kg"
+            what = f"has {p.mass[worst]:.4g} kg, {found}, but at the start they had {self._mass:.9g} kg"
             raise _stopped(
-                s, "mass-drift", worst, what, "something writes to their masses; try it --no-plugins"
+                s,
+                "mass-drift",
+                worst,
+                what,
+                "a plug-in may have changed their masses; try it with --no-plugins",
             )
         mapped = s.mapped_mass
         if mapped is not None and not abs(mapped - mass) <= DRIFT * mass:
             worst = self._require_weights()
-            what = f"and the others have {mass:.9g} kg, but the nodes have got {mapped:.9g} kg of it"
-            order = f"order '{s.case.scheme.order.name}' may not map it; try another one"
+            what = f"and the others have {mass:.9g} kg, but the nodes have {mapped:.9g} kg"
+            order = f"order '{s.case.scheme.order.name}' may not map all mass; try another one"
             raise _stopped(s, "mass-drift", worst, what, order)
 
     def _require_weights(self) -> int:
@@ -158,13 +162,13 @@ class Guards:
         fastest = _fastest(s)
         speed = float(np.linalg.norm(s.particles.velocity[fastest]))
         what = (
-            f"is the fastest, {speed:.4g} m/s, and {balance.created:.4g} J have come from nowhere: "
-            f"what moves and is stored is {balance.held:.4g} J, and there was {balance.supply:.4g} J to do so"
+            f"is the fastest, {speed:.4g} m/s, and {balance.created:.4g} J of energy were created: motion "
+            f"and stored energy are {balance.held:.4g} J, but only {balance.supply:.4g} J were available"
         )
         why = remedy(s)
         if balance.redistributed > balance.created / 2:
             name = s.case.scheme.redistribution.name
-            put_in = f"redistribution '{name}' has put in {balance.redistributed:.4g} J"
+            put_in = f"redistribution '{name}' has added {balance.redistributed:.4g} J"
             why = f"{put_in}: try another one, or 'none'"
         raise _stopped(s, "energy", fastest, what, why)
 
@@ -172,10 +176,11 @@ class Guards:
         s = self._scene
         away = np.linalg.norm(s.particles.position - found.place, axis=1)
         what = (
-            f"is where the density is worst, {found.worst:.3g} times what it should be: inside the material "
-            f"it is off by {100 * found.departure:.2g} % on average: flow, volume and height are wrong"
+            f"is where the density is worst, {found.worst:.3g} times the right one: inside the material the "
+            f"density is wrong by {100 * found.departure:.2g} % on average, so flow, volume and height are "
+            "wrong"
         )
-        why = f"places and volumes of the particles no longer say the same; {cure(s)}"
+        why = f"positions and volumes of the particles contradict each other; {cure(s)}"
         raise _stopped(s, "density", int(np.nanargmin(away)), what, why)
 
 
@@ -214,7 +219,7 @@ def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = Fa
         what, open_ = f"left the grid at {where} m", _open_faces(s, position)
         if open_:
             faces = " and ".join(open_)
-            why = f"enlarge grid.domain or close that face, {faces}; or, if it was thrown out, {why}"
+            why = f"enlarge grid.domain or close that face, {faces}; if the particle was thrown out: {why}"
         else:
             what += ", through a face that is closed"
     raise _stopped(s, guard, index, what, why)
@@ -225,19 +230,20 @@ def remedy(s: SceneView) -> str:
     scheme = s.case.scheme
     exceeded = warnings(scheme, s.limits, s.time_step)
     if exceeded:
-        return f"likely since {exceeded[0]}: take that limit out of it"
+        return f"probably because {exceeded[0]}: remove that limit from it"
     for plugin in (scheme.order, scheme.shape, scheme.velocity, scheme.volumetric, scheme.redistribution):
         for caution in require_sentences(plugin, "cautions", plugin.cautions(s.case)):
-            return f"likely since {caution}"
+            return f"probably because {caution}"
     step = f"reduce scheme.time_step.fraction, which is {scheme.time_step.fraction:g}"
     torn = _torn(s)
     if torn > 0:
         cure = "smaller cells" if scheme.splitting else "smaller cells or scheme.splitting"
         return (
-            f"the material is torn: {100 * torn:.2g} % of its volume is in boxes longer than a cell, which "
-            f"no shorter step mends, but {cure} may; if it holds longer with a shorter step, {step}"
+            f"the material is torn: {100 * torn:.2g} % of its volume is in boxes longer than a cell; a "
+            f"shorter step does not cure this, but {cure} may; if the run lasts longer with a shorter step, "
+            f"{step}"
         )
-    return f"likely the step is too long: {step}; it is not, if half of that stops at the same time"
+    return f"probably the step is too long: {step}; if half of it stops at the same time, it is not the cause"
 
 
 def _torn(s: SceneView) -> float:

@@ -95,6 +95,10 @@ class Measures:
             diameters.append(high - low if plane is None else 2 * max(high - plane, plane - low))
         return sum(diameters) / len(diameters) if diameters else math.nan
 
+    def height(self, p: Particles) -> float:
+        """Top of the material above the grid's lower face, m; not a number where there is none."""
+        return self._height(p, self._inside(p))
+
     def fractured(self, p: Particles) -> float:
         """Part of the volume in boxes longer than a cell: its neighbours share no cell with it any more."""
         longest = p.box.max(axis=1)
@@ -102,7 +106,7 @@ class Measures:
         return float(np.sum(p.volume[apart]) / np.sum(p.volume))
 
     def _height(self, p: Particles, of: np.ndarray) -> float:
-        """Top of the material above the grid's lower face, m; not a number where there is none."""
+        """Top of some particles above the grid's lower face, m; not a number where there are none."""
         tops = (p.position[:, -1] + np.minimum(p.box[:, -1], self._longest))[of]
         return min(float(tops.max()), float(self.grid.extent[-1])) if len(tops) else np.nan
 

@@ -9,14 +9,13 @@ import numpy as np
 from ..case.model import Case
 from ..case.output import ROWS
 from ..case.plugins import plugins_of
-from ..case.state_variables import state_variables
+from ..case.state_variables import particle_variables
 from ..contracts.law import initial_state
 from ..errors import CaseError
 from ..geometry import expected_count
 from ..kernels.scatter import NODE, PAIR
 from ..kernels.splines import SUPPORT
 from ..kernels.wall_reach import NEAR
-from ..output import PARTICLE_VARIABLES
 from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .available_memory import tightest_limit
@@ -166,13 +165,13 @@ def _part_near(surface: audit.AuditedSurface, case: Case) -> float:
 
 def _kept_rows(case: Case) -> float:
     interval = case.output.history_interval
-    return ROWS if interval is None else case.until / interval
+    return ROWS if interval is None else case.end / interval
 
 
 def _doubles_per_row(case: Case) -> int:
     """Numbers a particle that a row of the history keeps, twice: once more while the file is written."""
     width = {"component": case.space_.dim, "tensor_component": 6}
-    known = PARTICLE_VARIABLES | state_variables(case)
+    known = particle_variables(case)
     fields = [known[name] for name in case.output.particle_history]
     return 2 * sum(math.prod(f.shape or [width[dimension] for dimension in f.trailing]) for f in fields)
 

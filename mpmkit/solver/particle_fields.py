@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from ..case.state_variables import field_name
+from ..case.state_variables import former_names
 from ..kernels.tensors import shear_rate
 from ..registry.audit import require_array
 from .grid import Grid
+from .observation import Observation
 from .particles import Particles
+from .state_fields import state_fields
+from .stresses import cauchy_stress, mean_pressure, shear_stress
+from .view import SceneView
 
 ROUNDING = 1e-9
 """Part of the yield stress by which a stress must exceed it to count as yielded."""
 VTK_ORDER = [0, 1, 2, 5, 3, 4]
 """Symmetric tensors of VTK are xx, yy, zz, xy, yz, xz."""
-
-
-def cauchy_stress(p: Particles) -> np.ndarray:
-    """Cauchy stress, Pa, ``(n, 6)``, tension positive: the extra stress minus the pressure."""
-    stress = p.stress.copy()
-    stress[:, :3] -= p.mapped_pressure[:, None]
-    return stress
-
-
-def mean_pressure(p: Particles) -> np.ndarray:
-    """Minus the mean normal stress, Pa, ``(n,)``; a solid has it too, though no equation of state."""
-    return p.mapped_pressure - p.stress[:, :3].sum(axis=1) / 3
-
-
-def shear_stress(p: Particles) -> np.ndarray:
-    """√(s:s/2) of the deviator s of the stress, Pa, ``(n,)``."""
-    s = p.stress.copy()
-    s[:, :3] -= s[:, :3].mean(axis=1)[:, None]
-    return np.sqrt((s[:, :3] ** 2).sum(axis=1) / 2 + (s[:, 3:] ** 2).sum(axis=1))
 
 
 def yielded(p: Particles) -> np.ndarray:
@@ -55,19 +40,6 @@ def yielded(p: Particles) -> np.ndarray:
     return found
 
 
-def state_fields(p: Particles) -> dict[str, np.ndarray]:
-    """State variables of all laws, ``(n,)`` or ``(n, k)``; not a number where the law is another."""
-    found: dict[str, np.ndarray] = {}
-    for group in p.groups:
-        for name, array in group.state.items():
-            flat = array.reshape(len(array), -1) if array.ndim > 1 else array
-            field = field_name(group.law, name)
-            if field not in found:
-                found[field] = np.full((len(p), *flat.shape[1:]), np.nan)
-            found[field][group.part] = flat
-    return found
-
-
 PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
     "position": lambda p, grid: p.position + grid.lower,
     "velocity": lambda p, grid: p.velocity,
@@ -81,14 +53,43 @@ PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
 """Particle fields that a history can keep, beside the state variables."""
 
 
-def history_fields(p: Particles, grid: Grid, names: list[str]) -> dict[str, np.ndarray]:
-    """The fields that a row keeps."""
-    states = state_fields(p) if any(name not in PARTICLE_FIELDS for name in names) else {}
-    return {n: PARTICLE_FIELDS[n](p, grid) if n in PARTICLE_FIELDS else states[n] for n in names}
+def history_fields(scene: SceneView) -> dict[str, np.ndarray]:
+    """The fields that a row keeps.
+
+    Raises:
+        PluginFault: a particle field is none.
+    """
+    case, p = scene.case, scene.particles
+    names = case.output.particle_history
+    others = [name for name in names if name not in PARTICLE_FIELDS]
+    known = state_fields(p) | added_fields(scene, others) if others else {}
+    former = former_names(case) if others else {}
+    return {
+        name: PARTICLE_FIELDS[name](p, scene.grid)
+        if name in PARTICLE_FIELDS
+        else known[former.get(name, name)]
+        for name in names
+    }
 
 
-def frame_fields(p: Particles) -> dict[str, np.ndarray]:
-    """What a frame shows of every particle; docs/cases.md has the units."""
+def added_fields(scene: SceneView, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+    """The particle fields of the case, or those of some names, ``(n,)`` or ``(n, k)``."""
+    fields, observed = scene.case.output.fields, Observation(scene)
+    found = {}
+    for name in fields if names is None else [name for name in names if name in fields]:
+        values = fields[name].values(observed)
+        require_array(fields[name], "values", values, (len(observed.number), *fields[name].shape))
+        found[name] = values.reshape(len(values), -1) if values.ndim > 1 else values
+    return found
+
+
+def frame_fields(scene: SceneView) -> dict[str, np.ndarray]:
+    """What a frame shows of every particle; docs/cases.md has the units.
+
+    Raises:
+        PluginFault: a particle field is none.
+    """
+    p = scene.particles
     return {
         "velocity": p.velocity,
         "speed": np.sqrt(np.einsum("pi,pi->p", p.velocity, p.velocity)),
@@ -102,4 +103,5 @@ def frame_fields(p: Particles) -> dict[str, np.ndarray]:
         "body": p.body,
         "particle": p.number,
         **state_fields(p),
+        **added_fields(scene),
     }

@@ -1,4 +1,4 @@
-"""Volume ratios drawn to what the grid says of them: the one way in which J hears of where particles are."""
+"""Volume ratios tend to values from the grid: only here do the positions of particles change J."""
 
 from __future__ import annotations
 

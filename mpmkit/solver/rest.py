@@ -119,16 +119,16 @@ def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
             periods.append(4 * height / group.sound_speed)
             viscosity = group.law.largest_viscosity(case.scale.rate)
             damped = 6 * group.density * height**2 / (math.pi**2 * viscosity) if viscosity > 0 else math.inf
-            seconds.append(min(damped, case.until))
+            seconds.append(min(damped, case.end))
     if not periods:
         return None
     slowest = int(np.argmax(seconds))
     period, lasts = periods[slowest], seconds[slowest]
     count = max(1, round(lasts / period))
-    how_long = "to the end" if lasts >= case.until else "until viscosity has damped it, at the earliest"
+    how_long = "to the end" if lasts >= case.end else "until viscosity has damped it, at the earliest"
     return (
-        "gravity sets in at once on a fluid that begins without pressure: its pressure swings between about "
-        f"0 and twice that of its weight, with a period of about 4 h/c = {period:.2g} s, {how_long} "
+        "gravity acts suddenly on a fluid that begins without pressure: its pressure oscillates between "
+        f"about 0 and twice that of its weight, with a period of about 4 h/c = {period:.2g} s, {how_long} "
         f"({count} {'period' if count == 1 else 'periods'}, {lasts:.2g} s); take means over a few periods"
     )
 

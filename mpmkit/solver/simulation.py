@@ -1,4 +1,4 @@
-"""A scene in motion: its state, its clock, and the guards that stop it when it diverges."""
+"""A scene with its state and time, and the guards that stop it when it diverges."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from ..case.plugins import plugins_of
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
+from .diagnosed import diagnosed
 from .grid import Grid
 from .guards import Guards, stop
 from .measures import Measures
@@ -35,7 +36,7 @@ class Simulation:
     """Particles, grid and schemes of a case, advanced step by step.
 
     >>> simulation = Simulation(case)
-    >>> while simulation.time < case.until:
+    >>> while simulation.time < case.end:
     ...     simulation.advance()
     """
 
@@ -44,7 +45,7 @@ class Simulation:
         Args:
             case: a validated case.
             particles: a state to go on from; default: the case's bodies in their places.
-            fraction: part of the critical step, whatever the schemes say that they bear: for trying them.
+            fraction: part of the critical step, also beyond the stable part of the schemes, to test them.
 
         Raises:
             MpmkitError: this process was forked from one that had used the threads.
@@ -90,7 +91,7 @@ class Simulation:
         return {"particles": self.particles, "operations": self.operations, "guards": self.guards}
 
     def state(self) -> State:
-        """All that the run depends on from here on, beside the case: it goes on from it to the same bits."""
+        """All that the run depends on, except the case: a run continues from it with the same bits."""
         limits_ = np.array(list(self.limits.as_dict().values()))
         return plain_state(self) | {"limits/": limits_} | state_of(self.components)
 
@@ -123,35 +124,35 @@ class Simulation:
         self.guards.check_step()
 
     def remarks(self) -> list[str]:
-        """What the laws have to say of themselves, and what will change on the way."""
+        """Sentences of the laws, and on what will change during the run."""
         with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
-            said.append("the fluid rests from wall to wall: it starts with the pressure of its weight")
+            said.append("the fluid rests between walls: it starts with the pressure of its weight")
         elif self.swinging is not None:
             said.append(self.swinging)
         for group in self.particles.groups:
             if group.mach is not None:
                 said.append(
                     f"the sound speed follows the flow, at first {group.sound_speed:.4g} m/s; "
-                    "an elastic modulus stays as it is"
+                    "an elastic modulus does not change"
                 )
         return list(dict.fromkeys(said))
 
     def warnings(self) -> list[str]:
-        """What the user should know of the materials, and of the step that was chosen."""
+        """Sentences on problems of the materials and of the chosen step."""
         with self.blaming:
             of_materials = [
                 sentence
                 for group in self.particles.groups
-                for sentence in group.warnings(self.case.scale, self.case.until)
+                for sentence in group.warnings(self.case.scale, self.case.end)
             ]
             return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def prepare(self) -> None:
-        """Every few steps, look at the guards, refine, and choose the step; ``advance`` begins with it.
+        """Every few steps, check the guards, refine, and choose the step; ``advance`` begins with it.
 
-        Whoever wants to know the length of the next step beforehand calls it first: it looks once a step.
+        Call it first if you need the length of the next step; a second call in a step does nothing.
 
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.
@@ -205,6 +206,16 @@ class Simulation:
         if changed:
             self.operations.allocate()
             self.guards.accept_changes()
+
+    def measured(self) -> dict[str, float | np.ndarray]:
+        """What the history records of every scene, by the names of its variables, at the present step."""
+        found = self.measures(self.particles) | {
+            "redistribution_energy": self.redistribution_energy,
+            "time_step": self.time_step,
+            "mach_number": self.mach_number,
+        }
+        with self.blaming:
+            return found | diagnosed(self)
 
     @property
     def mapped_mass(self) -> float | None:

@@ -104,10 +104,10 @@ def warnings(scheme: Scheme, found: Limits, step: float) -> list[str]:
     settings, borne = scheme.time_step, borne_by(scheme)
     return [
         f"the time step of {step:.3g} s exceeds the {name} limit of {limit:.3g} s {step / limit:.3g}-fold, "
-        f"as scheme.time_step.ignore asks"
+        "because scheme.time_step.ignore contains it"
         if step > limit
         else f"the time step of {step:.3g} s is {step / limit:.3g} of the {name} limit of {limit:.3g} s, "
-        f"of which the schemes bear {borne[name]:g}; it was ignored as scheme.time_step.ignore asks"
+        f"and the schemes are stable up to {borne[name]:g} of it; scheme.time_step.ignore contains it"
         for name, limit in found.as_dict().items()
         if name in settings.ignore and step > borne[name] * limit
     ]

@@ -17,7 +17,7 @@ class Criteria:
     energy: float = 0.01
     """energy created, over the largest change of kinetic or total energy"""
     momentum: float = 1e-6
-    """momentum from nowhere, over the largest momentum that any part of the body could have"""
+    """created momentum, over the largest momentum that any part of the body could have"""
     distance: float = 0.05
     """root mean square distance of the particles, over their displacement"""
 

@@ -42,7 +42,7 @@ def trace(case: Case, fraction: float) -> Trace:
     with np.errstate(all="ignore"):
         try:
             with simulation.blaming:
-                for time in np.linspace(0.0, case.until, ROWS):
+                for time in np.linspace(0.0, case.end, ROWS):
                     while simulation.time + simulation.time_step / 2 <= time:
                         simulation.advance()
                     rows.append(_row(simulation, time - simulation.time))

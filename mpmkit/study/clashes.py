@@ -19,7 +19,7 @@ def within(inner: str, outer: str) -> bool:
 
 
 def clash(dimensions: Mapping[str, Iterable[str]]) -> str | None:
-    """A sentence that names two dimensions of a grid that change one place of the case; None if none do.
+    """A sentence that names two dimensions of a grid that change the same place of the case; None if none do.
 
     Args:
         dimensions: the paths that each dimension changes, by its name.
@@ -28,7 +28,7 @@ def clash(dimensions: Mapping[str, Iterable[str]]) -> str | None:
         for path, another in itertools.product(paths, others):
             if within(path, another) or within(another, path):
                 return (
-                    f"vary.{one} and vary.{other} change one place of the case: "
+                    f"vary.{one} and vary.{other} change the same place of the case: "
                     f"{_said(path, another)}; vary it in one of them only"
                 )
     return None

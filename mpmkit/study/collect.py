@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from ..case.ending import conditions
 from ..case.model import Case
 from ..output.netcdf import read_dataset
 from ..version import __version__
@@ -30,7 +31,7 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
     """
     axes = dimensions(study)
     shape = tuple(len(labels) for labels in axes.values())
-    time = np.linspace(0.0, max(member.case.until for member in members), ROWS)
+    time = np.linspace(0.0, max(_end(member, store) for member in members), ROWS)
     names = tuple(axes)
     fields: dict[str, tuple] = {
         name: (names, np.full(shape, np.nan), {"units": units, "long_name": text})
@@ -67,6 +68,12 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
         "mpmkit": __version__,
     }
     return dataset
+
+
+def _end(member: Member, store: Store) -> float:
+    """The time, s, to which a member has come where conditions may end it; else that of its case."""
+    record = store.outcome(member) if conditions(member.case.until) else None
+    return member.case.end if record is None else record["summary"].get("simulated_time") or member.case.end
 
 
 def _add_history(fields: dict, path, names: tuple, place: tuple, time: np.ndarray) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..running.recorder import COLUMNS
+from ..output.columns import COLUMNS
 
 FIGURES = {
     "t500": ("s", "time to a spread of 500 mm"),

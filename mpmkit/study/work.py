@@ -51,18 +51,19 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
     import json
 
     from ..case import parse_case
+    from ..case.ending import latest
     from ..running.runner import run
     from ..solver.memory import expected_bytes, require_memory
 
     try:
-        case = parse_case(data, ["output.report=false", f"output.frame_interval={data['until']!r}"])
+        case = parse_case(data, ["output.report=false", f"output.frame_interval={latest(data['until'])!r}"])
         require_memory(case)
     except Exception as error:
         return Outcome(FAILED, reason(error), {}, {}, b"")
     fate, sentence = "finished", ""
     with tempfile.TemporaryDirectory() as place:
         with suppress(Exception):  # which the run meets again, as something to tell of
-            moment = case.model_copy(update={"until": MOMENT * case.until})
+            moment = case.model_copy(update={"until": MOMENT * case.end})
             run(moment, Path(place) / "moment", threads=threads)
         out = Path(place) / "run"
         wall, cpu = clock.perf_counter(), clock.process_time()

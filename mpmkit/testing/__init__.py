@@ -1,18 +1,20 @@
-"""The conformance kit: whether a plug-in keeps its contract, in a test file of three lines.
+"""The conformance kit: it checks whether a plug-in keeps its contract, in a test file of three lines.
 
 >>> from mpmkit.testing import law_tests
 >>> from mpmkit_casson import Casson
 >>> test_casson = law_tests(Casson(yield_stress=20, casson_viscosity=0.8), flow_curve=…)
 
-Under pytest each property is then a test of its own; without it, ``for check in law_checks(law): check()``.
+With pytest each property is a test of its own; without pytest, ``for check in law_checks(law): check()``.
 """
 
 from .checks import (
     Check,
     contact_checks,
+    diagnostic_checks,
     equation_of_state_checks,
     law_checks,
     order_checks,
+    particle_field_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
@@ -22,9 +24,11 @@ from .checks import (
 )
 from .pytest_tests import (
     contact_tests,
+    diagnostic_tests,
     equation_of_state_tests,
     law_tests,
     order_tests,
+    particle_field_tests,
     redistribution_tests,
     refinement_tests,
     shape_tests,
@@ -39,12 +43,16 @@ __all__ = [
     "Violation",
     "contact_checks",
     "contact_tests",
+    "diagnostic_checks",
+    "diagnostic_tests",
     "equation_of_state_checks",
     "equation_of_state_tests",
     "law_checks",
     "law_tests",
     "order_checks",
     "order_tests",
+    "particle_field_checks",
+    "particle_field_tests",
     "redistribution_checks",
     "redistribution_tests",
     "refinement_checks",

@@ -1,4 +1,4 @@
-"""The checks of each kind of plug-in, gathered, by name."""
+"""The checks of each kind of plug-in, by name."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from typing import Any
 from ..contracts import (
     ConstitutiveLaw,
     Contact,
+    Diagnostic,
     EquationOfState,
     Operations,
+    ParticleField,
     Plugin,
     Redistribution,
     Refinement,
@@ -29,6 +31,7 @@ from . import (
     flight,
     law_promises,
     laws,
+    measured,
     radial,
     redistribution,
     refinement,
@@ -117,6 +120,13 @@ ON_CONTACTS = (
     contacts.galilei,
     contacts.batch_order,
 )
+ON_DIAGNOSTICS = (
+    measured.declares,
+    measured.numbers,
+    measured.remembers_nothing,
+    measured.particle_order,
+)
+ON_PARTICLE_FIELDS = (measured.arrays, measured.each_for_itself)
 
 
 @dataclass(frozen=True)
@@ -219,6 +229,28 @@ def surface_checks(surface: Surface, *, size: float = 1.0) -> list[Check]:
 def contact_checks(contact: Contact) -> list[Check]:
     """What every contact must do."""
     return _of("contact", contact, [(check.__name__, partial(check, contact)) for check in ON_CONTACTS])
+
+
+def diagnostic_checks(diagnostic: Diagnostic) -> list[Check]:
+    """What every diagnostic must do, in each space in which it can be measured."""
+    homes = measured.at_home(diagnostic)
+    return _of(
+        "diagnostic",
+        diagnostic,
+        [
+            ("home", partial(measured.home, diagnostic)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, diagnostic, space))
+                for check in ON_DIAGNOSTICS
+                for space in homes
+            ),
+        ],
+    )
+
+
+def particle_field_checks(field: ParticleField) -> list[Check]:
+    """What every particle field must do, in each space."""
+    return _of("particle_field", field, _in_each_space(ON_PARTICLE_FIELDS, field))
 
 
 def _in_each_space(

@@ -1,4 +1,4 @@
-"""The checks as tests of pytest, which is imported by those alone who ask for them."""
+"""The checks as tests of pytest, which is imported only here."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Callable
 from ..contracts import (
     ConstitutiveLaw,
     Contact,
+    Diagnostic,
     EquationOfState,
+    ParticleField,
     Redistribution,
     Refinement,
     ShapeFunction,
@@ -19,9 +21,11 @@ from ..contracts import (
 from .checks import (
     Check,
     contact_checks,
+    diagnostic_checks,
     equation_of_state_checks,
     law_checks,
     order_checks,
+    particle_field_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
@@ -44,18 +48,19 @@ def law_tests(
     density: float = DENSITY,
     sound_speed: float = SOUND_SPEED,
 ) -> Test:
-    """A test function, to be given a name that begins with ``test``, which has a case for every check.
+    """A test function with a case for every check; give it a name that begins with ``test``.
 
     Simple shear on every plane and against the flow curve, dissipation, objectivity, no stress at rest,
-    independence of the other particles, and whether it does as it says: state, wave speed, viscosity.
+    independence of the other particles, and whether declared state, wave speed and viscosity are right.
 
     Args:
         law: with parameters.
-        flow_curve: shear stress, Pa, of steady shear at rates ``(n,)``, 1/s, written anew and not taken from
-            the law. Unless given, that of a law which is made of one, or none.
+        flow_curve: shear stress, Pa, of steady shear at rates ``(n,)``, 1/s, written independently of the
+        law.
+            Default: that of a law which is defined by a flow curve; otherwise it is not checked.
         strain: shear strain after which the stress is steady.
-        rel: relative error of the stress that is allowed. Unless given 1e-6, or 1e-3 for a law that
-            remembers: its spring, turned by the shear, takes (tau/G)² of the stress.
+        rel: allowed relative error of the stress; default: 1e-6, or 1e-3 for a law with memory, whose spring,
+            turned by the shear, takes (tau/G)² of the stress.
         density: kg/m³.
         sound_speed: m/s, for a law that uses an equation of state.
     """
@@ -91,7 +96,7 @@ def order_tests(order: UpdateOrder) -> Test:
 def velocity_tests(velocity: VelocityUpdate) -> Test:
     """A test function, as that of ``law_tests``, for a velocity update.
 
-    Free flight, mass, momentum, and no energy from nowhere, in every space.
+    Free flight, mass, momentum, and no created energy, in every space.
     """
     return _tests(velocity_checks(velocity))
 
@@ -99,7 +104,7 @@ def velocity_tests(velocity: VelocityUpdate) -> Test:
 def volumetric_tests(treatment: VolumetricTreatment) -> Test:
     """A test function, as that of ``law_tests``, for a volumetric treatment.
 
-    A constant field stays, the power of the pressure is what the energy loses, the rate is a number.
+    A constant field stays, the power of the pressure equals the loss of energy, the rate is a number.
     """
     return _tests(volumetric_checks(treatment))
 
@@ -115,7 +120,7 @@ def redistribution_tests(author: Redistribution) -> Test:
 def refinement_tests(author: Refinement) -> Test:
     """A test function, as that of ``law_tests``, for a refinement.
 
-    Particles as they begin are left alone, what there is of mass and momentum is kept, their number ends.
+    Particles at the start are not changed, mass and momentum are conserved, their number has a bound.
     """
     return _tests(refinement_checks(author))
 
@@ -123,7 +128,7 @@ def refinement_tests(author: Refinement) -> Test:
 def equation_of_state_tests(state: EquationOfState) -> Test:
     """A test function, as that of ``law_tests``, for an equation of state.
 
-    A pressure that falls with the volume, at the sound speed of the case, and the energy that belongs to it.
+    The pressure falls with the volume, at the sound speed of the case, and its energy is consistent.
     """
     return _tests(equation_of_state_checks(state))
 
@@ -131,11 +136,11 @@ def equation_of_state_tests(state: EquationOfState) -> Test:
 def surface_tests(surface: Surface, *, size: float = 1.0) -> Test:
     """A test function, as that of ``law_tests``, for a surface, in each space that can hold it.
 
-    A distance that changes no faster than the place, its gradient, and a motion that its velocity tells.
+    The distance has a slope of at most 1, normals are its gradient, and the velocity is that of the motion.
 
     Args:
         surface: with parameters.
-        size: m; it is looked at within so much of the origin along each axis.
+        size: m; the surface is checked within this distance of the origin along each axis.
     """
     return _tests(surface_checks(surface, size=size))
 
@@ -143,9 +148,27 @@ def surface_tests(surface: Surface, *, size: float = 1.0) -> Test:
 def contact_tests(contact: Contact) -> Test:
     """A test function, as that of ``law_tests``, for a contact.
 
-    Nodes that nothing touches stay, no energy is added, nothing is pulled, and frames make no difference.
+    Nodes without material do not change, no energy is added, nothing is pulled, and the frame of reference
+    makes no difference.
     """
     return _tests(contact_checks(contact))
+
+
+def diagnostic_tests(diagnostic: Diagnostic) -> Test:
+    """A test function, as that of ``law_tests``, for a diagnostic, in each space that can hold it.
+
+    Columns that are declared, a number for each, the scene left alone, and the same for the same particles.
+    The scene of the kit is a block of oil on the floor ``z_min``, from 0 to 0.25 m high, without other walls.
+    """
+    return _tests(diagnostic_checks(diagnostic))
+
+
+def particle_field_tests(field: ParticleField) -> Test:
+    """A test function, as that of ``law_tests``, for a particle field.
+
+    An array of the declared shape, the scene left alone, and particles that do not know each other.
+    """
+    return _tests(particle_field_checks(field))
 
 
 def _tests(checks: list[Check]) -> Test:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contact_mutants
+import diagnostic_mutants
 import equation_of_state_mutants
 import law_mutants
 import numpy as np
 import order_mutants
+import particle_field_mutants
 import pytest
 import redistribution_mutants
 import refinement_mutants
@@ -20,10 +22,12 @@ from mpmkit.registry import installed
 from mpmkit.testing import (
     Violation,
     contact_checks,
+    diagnostic_checks,
     equation_of_state_checks,
     law_checks,
     law_tests,
     order_checks,
+    particle_field_checks,
     redistribution_checks,
     refinement_checks,
     shape_checks,
@@ -185,9 +189,11 @@ CHECKS = {
     "equation_of_state": equation_of_state_checks,
     "surface": surface_checks,
     "contact": contact_checks,
+    "diagnostic": diagnostic_checks,
+    "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact")
-"""Kinds whose plug-ins go through the kit in ``test_surfaces_and_contacts.py``."""
+NEED_PARAMETERS = ("surface", "contact", "diagnostic")
+"""Kinds that go through the kit in ``test_surfaces_and_contacts.py`` and ``test_diagnostics.py``."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
     ("velocity", velocity_mutants.Still, "uniform motion plane-strain"),
@@ -265,6 +271,25 @@ OTHER_MUTANTS = [
     ("contact", contact_mutants.HiddenMemory, "batch order"),
     ("contact", contact_mutants.NoParity, "declares"),
     ("contact", contact_mutants.Rows, "descriptor"),
+    ("diagnostic", diagnostic_mutants.Nowhere, "home"),
+    ("diagnostic", diagnostic_mutants.SaysNothing, "home"),
+    ("diagnostic", diagnostic_mutants.NoUnit, "declares plane-strain"),
+    ("diagnostic", diagnostic_mutants.BadName, "declares 3d"),
+    ("diagnostic", diagnostic_mutants.Renamed, "numbers plane-strain"),
+    ("diagnostic", diagnostic_mutants.AText, "numbers plane-strain"),
+    ("diagnostic", diagnostic_mutants.AnArray, "numbers 3d"),
+    ("diagnostic", diagnostic_mutants.OverNothing, "numbers plane-strain"),
+    ("diagnostic", diagnostic_mutants.StopsIt, "numbers axisymmetric"),
+    ("diagnostic", diagnostic_mutants.ByChance, "remembers nothing plane-strain"),
+    ("diagnostic", diagnostic_mutants.OfTheFirst, "particle order plane-strain"),
+    ("particle_field", particle_field_mutants.NoUnit, "descriptor"),
+    ("particle_field", particle_field_mutants.Shapeless, "descriptor"),
+    ("particle_field", particle_field_mutants.OnlySome, "arrays plane-strain"),
+    ("particle_field", particle_field_mutants.Whole, "arrays 3d"),
+    ("particle_field", particle_field_mutants.OneNumber, "arrays axisymmetric"),
+    ("particle_field", particle_field_mutants.Infinite, "arrays plane-strain"),
+    ("particle_field", particle_field_mutants.Heavier, "arrays plane-strain"),
+    ("particle_field", particle_field_mutants.KnowsTheOthers, "each for itself plane-strain"),
 ]
 
 
@@ -279,6 +304,8 @@ OTHER_MUTANTS = [
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
+        ("diagnostic", diagnostic_mutants.Fastest),
+        ("particle_field", particle_field_mutants.Momentum),
     ],
 )
 def test_a_sound_one_passes(kind, plugin):

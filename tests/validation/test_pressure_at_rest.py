@@ -204,14 +204,16 @@ def test_what_begins_without_pressure_says_how_it_swings_and_does(material):
 
 def test_viscosity_that_ends_the_swing_is_told_and_what_has_none_is_not():
     """6 ρ h²/(π² mu) = 0.27 s for 200 Pa s: six periods of 0.049 s."""
-    (said,) = (s for s in open_column(WATER | {"viscosity": 200.0}, 0.6).remarks() if "gravity sets in" in s)
+    (said,) = (
+        s for s in open_column(WATER | {"viscosity": 200.0}, 0.6).remarks() if "gravity acts suddenly" in s
+    )
     assert "until viscosity has damped it, at the earliest (6 periods, 0.27 s)" in said
     for quiet in (
         tank("plane-strain", [(WATER, HEIGHT)]),
         open_column(WATER | {"sound_speed": 24.0}, 0.6, gravity=[0.0, 0.0]),
         open_column(MADE["solid"]["material"], 0.6),
     ):
-        assert not any("gravity sets in" in sentence for sentence in quiet.remarks())
+        assert not any("gravity acts suddenly" in sentence for sentence in quiet.remarks())
 
 
 # --- Turning over ---------------------------------------------------------------------------------------

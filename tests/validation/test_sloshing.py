@@ -128,7 +128,7 @@ def test_own_pressure_stiffens_the_wave_the_less_the_finer_the_cells(validate):
 
 @pytest.mark.parametrize("periods", [3, pytest.param(14, marks=pytest.mark.slow)])
 def test_a_tank_that_swings_for_long_keeps_its_volume(validate, periods):
-    """A wave of a fifth of the depth, 14 periods long: J hears of where particles are, and holds them apart.
+    """A wave of a fifth of the depth, 14 periods long: J depends on the positions of particles.
 
     With J that is drawn to its average alone it has sunk to 0.89 by then, and without splitting to 0.6.
     """

@@ -74,5 +74,5 @@ def require_writer(path: Path) -> None:
             import imageio_ffmpeg  # noqa: F401
         except ImportError:
             raise CaseError(
-                f"'{path}' needs the package imageio-ffmpeg: pip install 'mpmkit[movie]', or write a .gif"
+                f"'{path}' needs the package imageio-ffmpeg: pip install imageio-ffmpeg, or write a .gif"
             ) from None

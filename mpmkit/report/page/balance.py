@@ -122,7 +122,7 @@ def _energy(source: Source) -> list[tuple[str, str]]:
         said = f"{number(lost)} J, by viscosity, friction and the damping of the method"
         found.append(("Energy lost in the flow", said))
     else:
-        found.append(("Energy from nowhere", f"{number(-lost)} J: the method has made it"))
+        found.append(("Created energy", f"{number(-lost)} J: an error of the method"))
     if moved:
         said = f"{number(moved)} J, by shifting particles so that they stay evenly spread"
         found.append(("Energy put in by the method", said))

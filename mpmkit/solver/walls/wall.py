@@ -45,6 +45,11 @@ class Wall:
         assert self._near is not None
         return self._near
 
+    @property
+    def is_near(self) -> bool:
+        """Whether any node that particles can reach is near it: no other wall costs anything in a step."""
+        return len(self.near.at) > 0
+
     def state(self) -> State:
         """What it has given, where it was looked for, and what its contact remembers at the nodes."""
         kept = plain_state(self, but=("odd", "pulls", "_near", "_acting", "_after"))
@@ -83,9 +88,9 @@ class Wall:
         if not self.near.found or self._moved > MARGIN:
             self._find(time)
             self._moved = 0.0
-        if self._lag > LAG or not self.near.sorted:
+        if not self.near.sorted or (self._lag > LAG and self.is_near):
             self._sort(time)
-        elif moved > 0:
+        elif moved > 0 and self.is_near:
             self.near.speed(self.surface, time)
         self.changes = self.changes or moved > 0 or (self._found < time and there != self._there)
         self._time = time
@@ -107,7 +112,7 @@ class Wall:
 
     def keep_out(self, position: np.ndarray) -> None:
         """Put particles that have come into it back to its surface."""
-        if self._there:
+        if self._there and self.is_near:
             w = self.near
             wall_reach.keep_out(position, self.grid.cell_size, w.lower, w.strides, w.dense)
 
@@ -117,7 +122,7 @@ class Wall:
         before, self.touches = self.touches, 0
         self._mapped[:] = 0.0
         w.touched[w.at] = 0
-        if self._there:
+        if self._there and self.is_near:
             self.touches = wall_reach.mark_touched(
                 position, half_size, 1 / self.grid.cell_size, base, weight, w.lower, w.strides, w.dense,
                 w.touched,

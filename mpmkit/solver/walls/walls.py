@@ -51,6 +51,8 @@ class Walls:
                 of.append(number)
         self._names, self._of = tuple(names), tuple(of)
         self._sorts = -1
+        self.touched = False
+        """Whether any wall acts in this step."""
 
     def __len__(self) -> int:
         return len(self.walls)
@@ -144,16 +146,12 @@ class Walls:
         """Find the nodes that material touches."""
         for wall in self.walls:
             wall.mark(self.particles.position, self.particles.half_size, base, weight)
+        self.touched = any(wall.touches for wall in self.walls)
 
     def fold(self, momentum: bool, forces: bool) -> None:
         """Fold what lies on the ghosts of the walls; those of the faces are folded already."""
-        for wall in self.walls:
+        for wall in self.walls if self.touched else ():
             wall.fold(momentum, forces)
-
-    @property
-    def touched(self) -> bool:
-        """Whether any wall acts in this step."""
-        return any(wall.touches for wall in self.walls)
 
     def constrain(self, of_faces: np.ndarray, dt: float | None = None, rehearse: bool = False) -> None:
         """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill their ghosts.
@@ -175,12 +173,12 @@ class Walls:
 
     def taken_up(self, flip: float) -> None:
         """Count impulses in mapping, of which particles take a part 1 - ``flip``: see ``move_particles``."""
-        for wall in self.walls:
+        for wall in self.walls if self.touched else ():
             wall.taken_up(1 - flip)
 
     def fold_pairs(self, pairs: np.ndarray) -> None:
         """Fold the sums of an average."""
-        for wall in self.walls:
+        for wall in self.walls if self.touched else ():
             if not wall.touches:
                 continue
             w = wall.near

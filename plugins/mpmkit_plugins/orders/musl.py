@@ -4,7 +4,7 @@ from mpmkit.contracts import Operations, UpdateOrder, hookimpl
 
 
 class MUSL(UpdateOrder):
-    """As USL, but the stress follows the velocities of the updated particles, mapped to the nodes anew.
+    """As USL, but with the stress of velocities that are mapped to the nodes again after the update.
 
     A nearly empty node then gets a particle's velocity, never a quotient of two small numbers.
     """

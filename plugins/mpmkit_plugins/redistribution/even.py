@@ -1,4 +1,4 @@
-"""Volume, box and place of sheared particles made to say the same."""
+"""Keeps volume, box and position of sheared particles consistent."""
 
 import numpy as np
 from numba import prange
@@ -25,10 +25,11 @@ EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
 
 
 class Even(Redistribution):
-    """Boxes of equal sides; J drawn to the room there is; places kept even; every cell weighs what it holds.
+    """Boxes have equal sides, J follows the available room, and particles are kept evenly spaced.
 
-    All rates go with the shear rate γ̇, so that nothing happens at rest, in rigid motion, or by making steps
-    shorter. With the crowding κ of the grid's nodes and κ_f of a lattice as fine as the particles' spacing h:
+    All rates are proportional to the shear rate γ̇, so nothing happens at rest or in rigid motion, and the
+    step has no influence. With the crowding κ of the grid's nodes and κ_f of a lattice as fine as the
+    particles' spacing h:
 
         d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
         dx/dt = -2 γ̇ h² ∇κ_f, what is missing counting inside only, with no part out of the surface,

@@ -22,15 +22,15 @@ class NoRedistribution(Redistribution):
         laws = [body.material.constitutive_law for body in case.bodies]
         fluids = [law for law in laws if law.uses_equation_of_state]
         free_fall = math.sqrt(case.height / (math.hypot(*case.gravity_vector) or math.inf))
-        if not fluids or not free_fall or case.until < LONG * free_fall:
+        if not fluids or not free_fall or case.end < LONG * free_fall:
             return []
         if not _is_driven(case) and not any(map(_is_thin, fluids)):
             return []
         return [
-            "redistribution 'none' does not keep places and volumes of a fluid the same for longer than some "
-            f"{LONG * free_fall:.2g} s of flow: films lost half of their speed and water that swings half "
-            "of its height, and with scheme.splitting films became a third too fast; "
-            "scheme.redistribution 'even' keeps them the same"
+            "redistribution 'none' does not keep positions and volumes of a fluid consistent for longer "
+            f"than about {LONG * free_fall:.2g} s of flow: films lost half of their speed, and oscillating "
+            "water half of its height; with scheme.splitting films became a third too fast; "
+            "scheme.redistribution 'even' keeps them consistent"
         ]
 
     def redistribute(self, ops, time) -> None:

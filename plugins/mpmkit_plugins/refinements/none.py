@@ -4,7 +4,7 @@ from mpmkit.contracts import Refinement, hookimpl
 
 
 class NoRefinement(Refinement):
-    """The scheme as published: a particle stays one, however far it is drawn out."""
+    """The scheme as published: particles are neither split nor merged."""
 
     name = "none"
     api_version = 2

@@ -8,14 +8,14 @@ from mpmkit.contracts import Operations, VelocityUpdate, hookimpl, quantity
 class APIC(VelocityUpdate):
     """Particles carry an affine velocity, v + C (x - x̄); v ← α (v + Δṽ) + (1 - α) ṽ with α = exp(-rate dt).
 
-    C = Σ N v (x_node - x̄)ᵀ D⁻¹ is read off the grid in every step and mapped back with the momentum, so
-    that a linear velocity field survives the way to the particles and back. What does not survive it, noise
-    mostly, is damped. APIC as published damps all of it in every step, and so more the smaller the step.
+    C = Σ N v (x_node - x̄)ᵀ D⁻¹ is taken from the grid in every step and mapped back with the momentum, so
+    that a linear velocity field is mapped to the particles and back without loss. The rest, mostly noise, is
+    damped. APIC as published damps all of it in every step, so the damping grows as the step gets smaller.
     Here it decays at a rate: α = 0 is APIC as published, α = 1 has no damping.
 
-    A particle alone in its cells is the stiffest thing there is: it swells and shrinks with ω² = c² Σ 1/D
-    over the axes. D counts as dx²/8 at the least, which a box of half a cell has at a node; ω dt < 2 then
-    asks for c dt/dx < √(1/6) in three dimensions and √(1/4) in two.
+    A particle alone in its cells limits the step: it expands and contracts with ω² = c² Σ 1/D over the axes.
+    D is at least dx²/8, the value of a box of half a cell at a node; ω dt < 2 then requires c dt/dx < √(1/6)
+    in three dimensions and √(1/4) in two.
     """
 
     name = "apic"

@@ -8,14 +8,14 @@ from mpmkit.contracts import Operations, VolumetricTreatment, hookimpl, quantity
 class NodalAverage(VolumetricTreatment):
     """f̄_p = Σ_n N_np f_n, f_n = Σ_q V_q N_nq f_q / Σ_q V_q N_nq, for volumetric rate and pressure.
 
-    A node is then the one that is nearly incompressible, and not each particle of a cell, which leaves the
-    velocity its freedom. V A = V Nᵀ W⁻¹ N V is symmetric: see the contract for what that is good for.
+    Each node is then nearly incompressible, and not each particle of a cell, so the velocity keeps enough
+    degrees of freedom. V A = V Nᵀ W⁻¹ N V is symmetric, so no energy is created (see the contract).
 
-    A cannot see what varies from particle to particle within its reach, so that nothing holds J together
-    there; as particles move over the grid, some of what it did see gets lost in that blind spot. J is
-    therefore drawn to its average at the rate at which the material crosses cells, a mean speed over a cell:
-    independent of the step, and nothing at rest. The same rate holds the places: where particles crowd, J is
-    drawn to the volume that is there.
+    A cannot see variations between neighbouring particles, so nothing keeps their J together, and as
+    particles move over the grid, more and more variations become invisible. So J tends to its average at the
+    rate at which the material crosses cells, the mean speed over the cell size: it does not depend on the
+    step, and nothing happens at rest. Where particles are too close, J tends with the same rate to the
+    available volume.
     """
 
     name = "nodal-average"

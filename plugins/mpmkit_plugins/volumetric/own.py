@@ -8,8 +8,8 @@ from mpmkit.contracts import Operations, VolumetricTreatment, hookimpl
 class Own(VolumetricTreatment):
     """Every particle keeps its own volumetric rate and pressure: the paper's choice.
 
-    Near incompressibility each particle of a cell puts a constraint on it. Where the velocity must vary
-    within the cell, as on a stick floor, that leaves it no freedom, and the material locks
+    In a nearly incompressible material each particle of a cell is a constraint. If the velocity must vary
+    within the cell, as on a stick floor, no degree of freedom is left, and the material locks
     (docs/findings.md).
     """
 

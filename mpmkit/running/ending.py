@@ -1,0 +1,92 @@
+"""The end of a run before its time: the scene is at rest, or a variable of the history is far enough."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..case.ending import Until
+from ..output.summary import AT_REST, CONDITION
+from ..solver.simulation import Simulation
+from ..solver.stateful import State, plain_state, restore_plain
+from .milestones import LOOKS, Milestones
+
+KEPT = 2e-4
+"""Change of a length at rest, as a part of the height of the bodies at the start: 0.06 mm of 300 mm."""
+PART = 0.25
+"""Last part of the run so far in which nothing longer has changed."""
+
+
+class Ending:
+    """Looks whether the run is to end, every ``milestones.LOOKS`` steps; ``watch`` is called after each step.
+
+    **At rest** a run ends where the material is at rest as ``Milestones`` says, and where, for the last
+    quarter of the run so far, the spread diameter, the height and the centre of mass have each stayed
+    within a band of ``KEPT`` h, with h the height of the bodies at the start. The band tells creep from rest:
+    what creeps at a steady rate leaves it, unless it would take four times the run so far to creep by
+    4 ``KEPT`` h. An elastic wobble stays in it, though its speed is not zero. No wall that stands
+    may have yet to move, and none that holds the material may have yet to vanish.
+
+    Attributes:
+        ended: ``at-rest``, ``condition``, or an empty text as long as the run goes on.
+        why: which condition has been met, in words; empty where none has.
+    """
+
+    def __init__(self, simulation: Simulation, milestones: Milestones) -> None:
+        self._simulation = simulation
+        self._milestones = milestones
+        until = simulation.case.until
+        self._until = until if isinstance(until, Until) else None
+        self.ended = self.why = ""
+        self._since = simulation.time
+        self._low = self._high = np.zeros(0)
+
+    def state(self) -> State:
+        """The band, and whether the run has ended."""
+        return plain_state(self)
+
+    def restore(self, state: State) -> None:
+        """Go on from them; a run that is to last longer has not ended."""
+        restore_plain(self, state)
+        if self._until is None:
+            self.ended = self.why = ""
+
+    def watch(self) -> None:
+        """Look at the present step, where it is due."""
+        simulation = self._simulation
+        if self._until is None or simulation.steps % LOOKS or not simulation.steps:
+            return
+        if self._until.rest and self._at_rest():
+            self.ended = AT_REST
+        values = simulation.measured() if self._until.variables and not self.ended else {}
+        for name, bounds in self._until.variables.items():
+            if not self.ended and bounds.hold(float(values[name])):
+                self.ended, self.why = CONDITION, f"{name} is {float(values[name]):.6g}, {bounds.words}"
+
+    def _at_rest(self) -> bool:
+        simulation, lengths = self._simulation, self._lengths()
+        if not len(self._low):
+            self._low = self._high = lengths
+        self._low, self._high = np.minimum(self._low, lengths), np.maximum(self._high, lengths)
+        moved = not (self._high - self._low <= KEPT * simulation.case.height).all()
+        if moved or self._a_wall_has_yet_to_move():
+            self._since, self._low, self._high = simulation.time, lengths, lengths
+        kept = simulation.time - self._since >= PART * simulation.time
+        return kept and self._milestones.at_rest_since is not None
+
+    def _lengths(self) -> np.ndarray:
+        """Spread diameter, height, and the centre of mass along the axes that are not periodic, m."""
+        simulation = self._simulation
+        p, measures, grid = simulation.particles, simulation.measures, simulation.grid
+        centre = p.mass @ p.position / p.mass.sum()
+        along = grid.periodic.copy()
+        along[0] |= simulation.case.space_.radial  # the centre is on the axis
+        lengths = np.array([measures.spread(p), measures.height(p), *centre[~along]])
+        return np.nan_to_num(lengths)  # what is periodic has no spread
+
+    def _a_wall_has_yet_to_move(self) -> bool:
+        time, end = self._simulation.time, self._simulation.case.end
+        return any(
+            (wall.surface.fastest(time, time) == 0 and wall.surface.fastest(time, end) > 0)
+            or (wall.touches > 0 and wall.surface.present(time) and not wall.surface.present(end))
+            for wall in self._simulation.operations.walls.walls
+        )
