@@ -350,3 +350,12 @@ def test_a_history_of_what_does_not_spread_is_plotted_by_what_changes(tmp_path):
     write_history(tmp_path, 3)
     history.look(2.0)
     assert history.lines[0] == "height (mm)"
+
+
+def test_a_run_that_may_end_earlier_is_followed_to_its_latest_end(tmp_path):
+    write_history(tmp_path, 2)
+    case = json.loads(RunDirectory(tmp_path).case.read_text()) | {
+        "until": {"at_most": 3.0, "max_speed": {"at_most": 1e-4}}
+    }
+    write_json(RunDirectory(tmp_path).case, case)
+    assert SoFar(tmp_path, resumed=True).history()["until"] == 3.0
