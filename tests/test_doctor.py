@@ -4,6 +4,8 @@ import json
 import os
 import platform
 import shutil
+import subprocess
+import sys
 from collections import namedtuple
 from importlib.metadata import version
 
@@ -99,3 +101,13 @@ def test_a_section_that_fails_leaves_the_others_alone(monkeypatch):
     found = examine()
     assert found["disk"].problems == ["the section 'disk' could not be examined: OSError: no such device"]
     assert found["versions"].facts["mpmkit"] == mpmkit.__version__
+
+
+@pytest.mark.parametrize(("name", "value"), [("NUMBA_NUM_THREADS", "abc"), ("NUMBA_THREADING_LAYER", "foo")])
+def test_an_environment_in_which_nothing_runs_is_described_all_the_same(name, value):
+    command = [sys.executable, "-m", "mpmkit", "doctor"]
+    environment = os.environ | {name: value}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert f"the environment variable {name} is '{value}'" in done.stdout.partition("\nproblems\n")[2]
+    assert "Traceback" not in done.stdout + done.stderr
+    assert "working directory" in done.stdout

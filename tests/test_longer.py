@@ -119,7 +119,7 @@ def test_a_rerun_says_that_the_case_was_edited(finished, tmp_path, capsys):
     assert stop.value.code == 1
     said = capsys.readouterr().out.splitlines()
     assert said[0] == (
-        "not as it was: case.json was edited after the run: "
+        "changed since the run: case.json was edited after the run: "
         "bodies.0.material.yield_stress was 188.91 and is 200.0"
     )
     assert said[1].startswith("not the same: ")

@@ -117,9 +117,7 @@ def test_dask_is_not_needed(run):
 
 
 def test_what_is_no_run_is_a_sentence(run, tmp_path):
-    with pytest.raises(
-        CaseError, match=r"does not hold the results of a run: it is a directory of something"
-    ):
+    with pytest.raises(CaseError, match=r"does not hold the results of a run: it is a directory of"):
         mpmkit.open_run(tmp_path)
     assert repr(run) == f"<Run of the case 'tiny' in '{run.directory}'>"
     assert run.summary["stopped_because"] == "finished"
@@ -136,7 +134,7 @@ def test_a_run_is_shown_with_its_figures_and_a_picture(run):
 
 
 def test_a_case_is_shown_as_a_table_with_units_and_a_picture():
-    case = load_case(LIFTED)
+    case = load_case(LIFTED, ['bodies.0.material.sound_speed={"factor": 10}'])
     shown = case._repr_html_()
     for part in ("axisymmetric", "72 × 61 cells of 5 mm", "yield_stress 188.91 Pa", "flow_index 1.33",
                  "frustum (height 0.3 m", "walls.mould", "z_min: slip", "10 √(2 g h)", "<svg"):  # fmt: skip
@@ -251,3 +249,19 @@ def test_state_variables_of_a_law_keep_their_units(tmp_path):
     assert opened.back_stress.dims == ("time", "particle", "back_stress_component")
     assert opened.back_stress.attrs["units"] == "Pa"
     assert opened.unknown.attrs["units"] == ""  # not known, and not said to be 1
+
+
+def test_what_a_plug_in_adds_to_the_frames_has_its_units(tmp_path):
+    case = CASE | {"name": "tiny", "until": 0.004}
+    case["output"] = {"report": False, "fields": {"mu": "apparent-viscosity"}}
+    mpmkit.run(parse_case(case), tmp_path / "run")
+    opened = mpmkit.open_run(tmp_path / "run").frames
+    assert opened.mu.attrs["units"] == "Pa s"
+    np.testing.assert_allclose(opened.mu.isel(time=-1), 10.0)  # Newtonian
+
+
+def test_a_case_that_may_end_earlier_says_so():
+    shown = parse_case(
+        CASE | {"name": "tiny", "until": {"at_most": 3.0, "max_speed": {"at_most": 1e-4}}}
+    )._repr_html_()
+    assert "at the latest at t = 3 s" in shown

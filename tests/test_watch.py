@@ -282,6 +282,16 @@ def test_a_watched_run_leaves_what_any_run_leaves_and_the_same_bits(tiny):
     ]
 
 
+def test_a_run_that_is_refused_is_one_sentence_and_has_no_page(tiny, capfd):
+    (tiny / "full").mkdir()
+    (tiny / "full/file").touch()
+    assert status("run", "tiny.json", "--watch", "--out", "full") == 2
+    time.sleep(0.5)
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1
+    assert "is not empty" in said
+
+
 @pytest.mark.parametrize("option", ["--watch", "--open", "--plot"])
 def test_quiet_and_watching_contradict_each_other(tiny, capsys, option):
     assert status("run", "tiny.json", "--quiet", option) == 2
@@ -340,3 +350,12 @@ def test_a_history_of_what_does_not_spread_is_plotted_by_what_changes(tmp_path):
     write_history(tmp_path, 3)
     history.look(2.0)
     assert history.lines[0] == "height (mm)"
+
+
+def test_a_run_that_may_end_earlier_is_followed_to_its_latest_end(tmp_path):
+    write_history(tmp_path, 2)
+    case = json.loads(RunDirectory(tmp_path).case.read_text()) | {
+        "until": {"at_most": 3.0, "max_speed": {"at_most": 1e-4}}
+    }
+    write_json(RunDirectory(tmp_path).case, case)
+    assert SoFar(tmp_path, resumed=True).history()["until"] == 3.0

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from .ending import conditions
+from .ending import ending
 from .model import Case
 from .picture import picture
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
@@ -35,7 +35,7 @@ def case_html(case: Case) -> str:
 
 def _rows(case: Case) -> Iterator[tuple[str, str]]:
     yield "space", case.space
-    yield "until", " or ".join([*conditions(case.until), f"{case.end:g} s"])
+    yield "until", ending(case.until) or f"{case.end:g} s"
     cells = " × ".join(f"{round(cells_along(case, axis)):,}" for axis in case.space_.axes)
     yield "grid", f"{cells} cells of {1e3 * case.grid.cell_size:g} mm"
     faces = [f"{name}: {_said(face)}" for name, face in case.grid.faces.items()]

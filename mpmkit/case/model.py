@@ -37,7 +37,9 @@ class Grid(Model):
 
     cell_size: float = quantity("m", "side of a cell", gt=0)
     domain: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = quantity(
-        "m", "lower and upper end of the domain along each axis of the space"
+        "m",
+        "lower and upper end of the domain along each axis of the space; at an open face an end is moved out "
+        "to a whole number of cells",
     )
     faces: dict[str, Face] = Field(
         default={}, description="condition on each face, such as z_min; default: every face is open"

@@ -18,7 +18,7 @@ from .printing import echo
 )
 @click.argument("study", type=PATH)
 @click.option(
-    "--variable", default="spread_diameter", show_default=True, help="History or figure to judge by."
+    "--variable", default="spread_diameter", show_default=True, help="History or number that is compared."
 )
 @click.option(
     "--reference",
@@ -26,10 +26,10 @@ from .printing import echo
     show_default=True,
     type=PATH,
     metavar="FILE|NUMBER|finest",
-    help="What the error is against: a CSV file, an exact value, or the finest member.",
+    help="Reference of the error: a CSV file, an exact value, or the finest member.",
 )
 @click.option(
-    "--cost", default="wall_seconds", show_default=True, help="Figure of a member that is its cost."
+    "--cost", default="wall_seconds", show_default=True, help="Number that is the cost of a member."
 )
 @click.option("--out", type=PATH, metavar="FILE", help="The picture; default: chart.png of the study.")
 @click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")

@@ -6,7 +6,7 @@ import json
 import logging
 import time as clock
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +97,8 @@ class Display(logging.Handler):
         )
         self._task = self._bar.add_task(name, total=1.0, line="")
         self._started = False
+        self._waiting: list[Callable[[], None]] = []
+        """what is to be called once the run has something to say"""
         self._compiling = _Compiling(self._say_compiling)
         self._said = clock.monotonic()
         self._level_before = LOGGER.level
@@ -118,6 +120,14 @@ class Display(logging.Handler):
         LOGGER.removeHandler(self)
         LOGGER.setLevel(self._level_before)
 
+    def once_started(self, call: Callable[[], None]) -> None:
+        """Call a function once the run has something to say; from any thread."""
+        with self.lock or nullcontext():  # in which ``emit`` is called as well
+            if not self._started:
+                self._waiting.append(call)
+                return
+        call()
+
     def emit(self, record: logging.LogRecord) -> None:
         if record.name == RECORD.name:
             return
@@ -127,6 +137,8 @@ class Display(logging.Handler):
             say(f"warning: {record.getMessage()}", style="yellow")
         if not self._started:
             self._started = True
+            for call in self._waiting:
+                call()
             self._bar.start()
 
     def _say_compiling(self) -> bool:

@@ -40,7 +40,7 @@ CHOICES = ("speed", "shear-rate", "yielded", "pressure")
     type=PATH,
     metavar="FILE",
     help="The movie, FILE.gif or FILE.mp4; default: report/movie.gif of the run. MP4 needs: pip install "
-    "'mpmkit[movie]'.",
+    "imageio-ffmpeg.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")
 def command(directory: str, fps: float, colour_by: str, out: str | None, overwrite: bool) -> None:

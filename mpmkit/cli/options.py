@@ -18,9 +18,9 @@ set_values = click.option(
 )
 until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
 threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads to use; default: as many as pay off."
+    "--threads", type=click.IntRange(min=1), help="Threads to use; default: as many as make the run faster."
 )
-quiet = click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+quiet = click.option("--quiet", is_flag=True, help="Print only errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
 overwrite_file = click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; default: runs/<case name>.")
@@ -30,7 +30,7 @@ study_out = click.option(
 study_overwrite = click.option(
     "--overwrite",
     is_flag=True,
-    help="Replace results in the study's directory that this study does not go on with.",
+    help="Replace results in the study's directory that do not belong to this study.",
 )
 member_threads = click.option(
     "--threads", type=click.IntRange(min=1), help="Threads of each member; default: as the study says."
@@ -38,7 +38,7 @@ member_threads = click.option(
 workers = click.option(
     "--workers",
     type=click.IntRange(min=1),
-    help="Members to run at once; default: as many as this machine's cores hold.",
+    help="Members to run at the same time; default: as many as fit on the cores.",
 )
 scheduler = click.option(
     "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."
@@ -48,7 +48,7 @@ no_plugins = click.Option(
     is_flag=True,
     expose_value=False,
     callback=lambda context, option, asked: _leave_out_plugins() if asked else None,
-    help="Load no plug-ins but mpmkit's own; MPMKIT_PLUGINS=NAME,… loads those of named distributions.",
+    help="Load only the built-in plug-ins; MPMKIT_PLUGINS=NAME,… loads those of named distributions too.",
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 

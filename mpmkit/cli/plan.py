@@ -74,7 +74,7 @@ def _advice(asked: str, cost: dict) -> list[str]:
             f"{'not known' if error is None else f'{100 * error:.2g} %'}"
         )
     lines += [
-        "* to expect in the first 1.5 s; known only where all else is as in the shipped study of a slump",
+        "* in the first 1.5 s; known only if all else is as in the shipped study of a slump",
         "",
     ]
     for model in cost["cheaper"]:

@@ -34,7 +34,7 @@ def command(directory: str, out: str | None, threads: int | None, overwrite: boo
     case, before = case_of(path), history_of(path)
     target = Path(out) if out is not None else path.with_name(f"{path.resolve().name}-rerun")
     for sentence in made_differently(before, case, threads or 1):
-        echo(f"not as it was: {sentence}")
+        echo(f"changed since the run: {sentence}")
     take_signals_as_interrupts()
     perform(target, quiet, resumed=False, case=case, overwrite=overwrite, threads=threads,
             checkpoint_every=None)  # fmt: skip

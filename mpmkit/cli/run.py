@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,6 +11,10 @@ from . import options
 from .command import with_examples
 from .duration import SECONDS
 from .paths import PATH
+
+if TYPE_CHECKING:
+    from ..watch import Watch
+    from .display import Display
 
 
 @with_examples(
@@ -138,7 +142,7 @@ def perform(
         plotted = directory if plot else None
         with (
             Display(name, plotted) as display,
-            _served(directory, resumed, opened) if watch else nullcontext(),
+            _served(directory, resumed, opened, display) if watch else nullcontext(),
         ):
             try:
                 go(display)
@@ -147,8 +151,8 @@ def perform(
     show_summary(directory)
 
 
-def _served(directory: Path, resumed: bool, opened: bool) -> Any:
-    """Serve the page of a run; its address is said once it is known."""
+def _served(directory: Path, resumed: bool, opened: bool, display: Display) -> Watch:
+    """Serve the page of a run; its address is said once it is known, and the run has not been refused."""
     from ..watch import Watch
     from .display import say
 
@@ -157,4 +161,4 @@ def _served(directory: Path, resumed: bool, opened: bool) -> Any:
         if opened:
             click.launch(address)
 
-    return Watch(directory, resumed, tell)
+    return Watch(directory, resumed, lambda address: display.once_started(lambda: tell(address)))

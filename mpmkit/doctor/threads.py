@@ -23,6 +23,9 @@ SLOW = {
 
 def threads() -> Finding:
     """Most threads of a run, the layer that starts them, and the variables that are set."""
+    from ..kernels.environment import require_sound_environment
+
+    require_sound_environment()  # in our words, before numba says it in its own
     import numba
 
     found = Finding({"most threads": numba.config.NUMBA_NUM_THREADS})

@@ -48,7 +48,7 @@ def open_frames(
     Args:
         files: times, s, and files, in order of time.
         space: of the scene.
-        states: the state variables of its laws, with their units.
+        states: what the laws and the plug-ins of the case add, with units.
 
     Raises:
         CaseError: there is no frame, or one cannot be read.

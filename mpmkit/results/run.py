@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..case import Case, load_case
-from ..case.state_variables import state_variables
+from ..case.state_variables import particle_variables
 from ..errors import CaseError
 from ..output import RunDirectory, read_frames
 from ..output.near_runs import why_no_run
@@ -61,7 +61,7 @@ class Run:
             CaseError: there are none.
         """
         files = read_frames(RunDirectory(self.directory).frames)
-        return open_frames(files, self.case.space_, state_variables(self.case))
+        return open_frames(files, self.case.space_, particle_variables(self.case))
 
 
 def open_run(directory: str | Path) -> Run:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..case.ending import latest
 from ..output import RunDirectory
 from ..output.netcdf import read_scalars
 
@@ -84,7 +85,7 @@ class SoFar:
         return {
             "version": version,
             "name": str(case.get("name", self.run.path.name)),
-            "until": case.get("until"),
+            "until": latest(case["until"]),
             "time": time,
             "series": {name: vars(one) for name, one in series.items()},
         }

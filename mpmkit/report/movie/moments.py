@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...case.ending import latest
 from ...errors import CaseError
 from ..run_results import RunResults
 
@@ -24,7 +25,7 @@ def shown_frames(results: RunResults, directory: Path) -> list[tuple[float, Path
     """
     frames = results.frames
     if len(frames) < LEAST:
-        until = results.case.get("until", 1.0)
+        until = latest(results.case["until"])
         there = "no frames" if not frames else "only one frame"
         raise CaseError(
             f"the run in '{directory}' has {there}, and a movie needs at least {LEAST}: run it again with a "

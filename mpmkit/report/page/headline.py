@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+from ...case.ending import latest
 from ...output.summary import LEAST_RATE, T500_DIAMETER, lifted_later
 from .section import Section, paragraph
 from .source import Source
@@ -34,9 +35,8 @@ def _ending(source: Source) -> str:
     """How the run ended, in a sentence or two."""
     summary, time = source.results.summary, source.results.time
     if source.running:
-        until = source.results.case["until"]
-        of = f" of {number(until)} s" if isinstance(until, int | float) else ""
-        return f"The run is at work: t = {seconds(float(time[-1]))}{of}."
+        until = latest(source.results.case["until"])
+        return f"The run is at work: t = {seconds(float(time[-1]))} of {number(until)} s."
     why, end = summary["stopped_because"], summary.get("simulated_time") or 0.0
     if why not in ENDED:
         errors = [said.text for said in source.last_start if said.level == "ERROR"]
