@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .case import Case, load_case, parse_case
+    from .fitting import fit
     from .results import Run, open_run, progress_bar
     from .running.runner import run
     from .solver.simulation import Simulation
@@ -20,6 +21,7 @@ __all__ = [
     "Run",
     "Simulation",
     "__version__",
+    "fit",
     "load_case",
     "open_run",
     "parse_case",
@@ -31,6 +33,7 @@ _HOME = {
     "Case": "mpmkit.case",
     "load_case": "mpmkit.case",
     "parse_case": "mpmkit.case",
+    "fit": "mpmkit.fitting",
     "run": "mpmkit.running.runner",
     "Run": "mpmkit.results",
     "open_run": "mpmkit.results",

@@ -4,6 +4,7 @@ import pytest
 
 from mpmkit.case import load_case
 from mpmkit.case.near_files import near_file
+from mpmkit.cli import main
 from mpmkit.errors import CaseError
 from mpmkit.study import load_study
 
@@ -52,3 +53,35 @@ def test_a_run_directory_is_answered_with_its_case(folder):
     (folder / "runs/slump/case.json").write_text("{}")
     with pytest.raises(CaseError, match=r"the case of the run in it is 'runs/slump/case.json'$"):
         load_case("runs/slump")
+
+
+@pytest.fixture
+def runs(folder):
+    for name in ("runs/slump", "runs/slump_fast", "elsewhere/pipe"):
+        (folder / name).mkdir(parents=True)
+        (folder / name / "case.json").write_text("{}")
+    (folder / "runs/slmu").mkdir()  # no run
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("runs/slmup", "runs/slump"),
+        ("slump", "runs/slump"),
+        ("runs/slump_fst", "runs/slump_fast"),
+        ("elsewhere/pip", "elsewhere/pipe"),
+    ],
+)
+@pytest.mark.parametrize("command", ["report", "movie", "rerun"])
+def test_a_run_directory_with_a_slip_is_answered_with_the_nearest_run(runs, capsys, command, typed, meant):
+    with pytest.raises(SystemExit) as ended:
+        main([command, typed])
+    assert ended.value.code == 2
+    assert f"there is no such directory; did you mean '{meant}'?" in capsys.readouterr().err
+
+
+def test_a_directory_that_is_like_none_is_not_guessed(runs, capsys):
+    with pytest.raises(SystemExit):
+        main(["report", "channel"])
+    assert capsys.readouterr().err.endswith("results of a run: there is no such directory\n")

@@ -18,7 +18,7 @@ from mpmkit.output.netcdf import read_dataset
 from mpmkit.report.page import MOST_BYTES, page_of
 from mpmkit.report.page.packing import LEVELS_8, LEVELS_16, Packed, Scale, packed, unpacked
 from mpmkit.report.page.thinning import fitting
-from mpmkit.running.flow_record import MOMENTS, FlowRecord
+from mpmkit.running.flow_record import LOOKS, MOMENTS, FlowRecord
 from mpmkit.running.runner import resume, run
 from mpmkit.solver.simulation import Simulation
 
@@ -27,7 +27,9 @@ COARSE = ["grid.cell_size=0.04", 'grid.domain={"r": [0, 0.36], "z": [0, 0.32]}',
 
 
 def a_slump(directory: Path, *changes: str) -> Path:
-    run(load_case(CASES / "slump_fast.json", [*COARSE, *changes]), directory, threads=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mpmkit.report.draw_pictures", lambda directory: [])  # they take longer than all else
+        run(load_case(CASES / "slump_fast.json", [*COARSE, *changes]), directory, threads=1)
     return directory
 
 
@@ -187,6 +189,15 @@ def test_a_run_without_a_report_keeps_no_flow(tmp_path):
     assert not (directory / "report").exists()
 
 
+def test_a_run_in_the_place_of_another_leaves_nothing_of_its_page(tmp_path):
+    directory = a_slump(tmp_path / "run", "until=0.02")
+    assert (directory / "flow.npz").exists()
+    case = load_case(CASES / "slump_fast.json", [*COARSE, "until=0.02", "output.report=false"])
+    run(case, directory, overwrite=True, threads=1)
+    assert not (directory / "flow.npz").exists()
+    assert not (directory / "report").exists()
+
+
 def moment(time: float, number: np.ndarray, x: float = 0.0, share: float = 1.0) -> Moment:
     """Particles in a row along x, one cell of 1 m each, at z = 1 m."""
     count = len(number)
@@ -229,19 +240,33 @@ def test_what_is_too_large_is_thinned_and_stands_for_the_rest():
     assert len(thinned.moments) < 40  # fewer than 2500 particles would show too little
 
 
-def test_a_record_is_closer_in_time_where_more_moves(tmp_path):
-    """A body that falls for a tenth of the run and then lies still: most moments are of its fall."""
+def recorded(falls: float) -> FlowRecord:
+    """A record of a run of 1 s in which a body falls by its height in ``falls`` s, and then lies still."""
     simulation = Simulation(load_case(CASES / "slump_fast.json", [*COARSE, "until=1.0"]))
     record, start = FlowRecord(simulation), simulation.particles.position.copy()
-    for step in range(400):
-        simulation.steps, simulation.time = step, step / 400
-        simulation.particles.position = start + np.array([0, 0.3 * min(1.0, step / 40)])
-        record.add(simulation)
-    times = np.array([moment.time for moment in record.moments])
-    assert len(times) == MOMENTS
-    assert (times[0], times[-1]) == (0.0, 399 / 400)
-    assert np.count_nonzero(times <= 0.1) >= 35
-    assert np.diff(times).max() < 0.05
+    for step in range(LOOKS):
+        simulation.steps, simulation.time = step, step / LOOKS
+        fallen = min(1.0, simulation.time / falls)
+        simulation.particles.position = start + np.array([0, 0.3 * fallen])
+        simulation.particles.velocity[:] = [0, 0.3 / falls if fallen < 1 else 0]
+        record.look(simulation)
+    record.add(simulation)
+    return record
+
+
+def test_a_record_is_closer_in_time_where_more_moves():
+    times = np.array([moment.time for moment in recorded(falls=0.1).moments])
+    assert (times[0], times[-1]) == (0.0, 1 - 1 / LOOKS)
+    assert np.count_nonzero(times <= 0.1) >= 38  # every look of the fall
+    assert 0.02 < np.diff(times).max() < 0.08  # and few of the rest
+
+
+def test_a_record_never_has_too_many_moments():
+    """A fall through the whole run: of 400 looks every fourth is kept, more or less."""
+    times = np.array([moment.time for moment in recorded(falls=1.0).moments])
+    assert len(times) <= MOMENTS
+    assert (times[0], times[-1]) == (0.0, 1 - 1 / LOOKS)
+    assert np.diff(times).max() < 0.03
 
 
 def test_moments_come_back_from_their_arrays():

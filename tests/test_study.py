@@ -90,7 +90,15 @@ def test_every_member_has_its_cost_and_its_fate(grid):
 def test_the_directory_has_table_figures_and_cases(grid):
     dataset, path = grid
     names = {entry.name for entry in path.iterdir()}
-    assert names == {"study.json", "results.nc", "table.md", "histories.png", "differences.png", "members"}
+    assert names == {
+        "study.json",
+        "results.nc",
+        "table.md",
+        "histories.png",
+        "differences.png",
+        "index.html",
+        "members",
+    }
     for picture in path.glob("*.png"):
         assert picture.read_bytes().startswith(b"\x89PNG")
         assert picture.stat().st_size > 10_000

@@ -66,9 +66,10 @@ def moment_of(time: float, share: float, fields: Mapping[str, np.ndarray]) -> Mo
     """A moment of arrays ``fields``, by the names of ``TYPES``, in any order of the particles."""
     order = np.argsort(fields["number"], kind="stable")
     arrays = {}
-    for name, kind in TYPES.items():
-        values = np.asarray(fields[name])[order]
-        arrays[name] = (np.minimum(values, LARGEST) if kind == np.float16 else values).astype(kind)
+    with np.errstate(over="ignore", invalid="ignore"):  # of a run that a guard is about to stop
+        for name, kind in TYPES.items():
+            values = np.asarray(fields[name])[order]
+            arrays[name] = (np.minimum(values, LARGEST) if kind == np.float16 else values).astype(kind)
     return Moment(float(time), float(share), **arrays)
 
 

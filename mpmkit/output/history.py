@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .netcdf import write_dataset
+from .netcdf import load_library, write_dataset
 from .variables import PARTICLE_VARIABLES, ParticleVariable, Variable, tensor_components
 
 if TYPE_CHECKING:
@@ -157,9 +157,10 @@ class History:
 
     def flush_if_due(self, path: Path) -> bool:
         """Write if the last write is long enough ago, and say whether; to be called after every row."""
-        start = clock.monotonic()
-        if start < self._next_flush:
+        if clock.monotonic() < self._next_flush:
             return False
+        load_library()  # the first time takes a while, and is no part of what a write takes
+        start = clock.monotonic()
         self.write(path)
         end = clock.monotonic()
         self._next_flush = max(start + FLUSH_INTERVAL, end + FLUSH_PAUSE * (end - start))

@@ -6,6 +6,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .atomic import cannot_write, replacing
 
 if TYPE_CHECKING:
@@ -16,6 +18,28 @@ MORE = 2**16
 """Bytes that a NetCDF file may have beside its arrays."""
 _ONE_AT_A_TIME = threading.Lock()
 """HDF5, the library inside netCDF4, crashes when two threads use it, even on files of their own."""
+
+
+def load_library() -> None:
+    """Load what reads and writes, which takes about a second the first time."""
+    import netCDF4  # noqa: F401
+    import xarray  # noqa: F401
+
+
+def read_scalars(path: Path) -> dict[str, tuple[np.ndarray, str, str]]:
+    """Values, long names and units of the variables with the one dimension ``time``, ``time`` among them.
+
+    Raises:
+        OSError, RuntimeError: there is none at the path, or a part of one.
+    """
+    import netCDF4
+
+    with _ONE_AT_A_TIME, netCDF4.Dataset(Path(path).absolute()) as file:
+        return {
+            name: (np.ma.filled(variable[:], np.nan), variable.long_name, variable.units)
+            for name, variable in file.variables.items()
+            if variable.dimensions == ("time",)
+        }
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path) -> None:

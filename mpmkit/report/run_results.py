@@ -13,6 +13,7 @@ import xarray
 
 from ..errors import CaseError
 from ..output import RunDirectory, read_frames, read_wall_frames
+from ..output.near_runs import why_no_run
 from ..output.netcdf import read_dataset
 from ..output.summary import trusted_rows, trusted_to_the_end
 
@@ -60,6 +61,8 @@ def read_results(path: Path) -> RunResults:
         CaseError: where the directory does not hold a run.
     """
     run = RunDirectory(path)
+    if not run.history.is_file():
+        raise CaseError(f"'{path}' does not hold the results of a run: {why_no_run(run.path)}")
     try:
         history = read_dataset(run.history)
         summary = json.loads(run.summary.read_text(encoding="utf-8"))

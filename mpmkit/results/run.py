@@ -11,6 +11,7 @@ from ..case import Case, load_case
 from ..case.state_variables import state_variables
 from ..errors import CaseError
 from ..output import RunDirectory, read_frames
+from ..output.near_runs import why_no_run
 from ..output.netcdf import read_dataset
 from .frames import open_frames
 from .html import run_html
@@ -76,5 +77,5 @@ def open_run(directory: str | Path) -> Run:
     files = RunDirectory(run.directory)
     for path in (files.case, files.history, files.summary):
         if not path.is_file():
-            raise CaseError(f"'{directory}' does not hold the results of a run: there is no '{path}'")
+            raise CaseError(f"'{directory}' does not hold the results of a run: {why_no_run(run.directory)}")
     return run

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
+from ..kernels.sums import kinetics
 from ..kernels.tensors import shear_rate
 from ..output.flow import TYPES, Moment, arrays_of, moment_of, moments_of_arrays
 from ..solver.particle_fields import mean_pressure, yielded
@@ -19,16 +21,19 @@ LOOKS = 400
 PARTICLES = 5000
 """Particles of a moment that are kept, about; all of them where there are fewer."""
 GOLDEN = (5**0.5 - 1) / 2
-STANDSTILL = 0.5
+STANDSTILL = 0.15
 """Change that a whole run of material at rest counts for."""
+LEAST = 0.009
+"""Change from which a moment is worth being kept: to take one costs as much as a step of a few particles."""
 
 
 class FlowRecord:
     """Moments of the flow, closer together where much moves.
 
     Between two moments lies a *change*: the RMS displacement of the particles over the height of the bodies,
-    and a small part for the time that passes. Where there are too many moments, the one goes that has the
-    least change around it. Which particles are kept depends on their numbers alone, and those are spread
+    and a small part for the time that passes. A look keeps a moment if the change since the last one may be
+    ``LEAST``, by the RMS speed; where there are too many moments, the one goes that has the least change
+    around it. Which particles are kept depends on their numbers alone, and those are spread
     evenly: a particle has the same number through the run, and what a split adds is thinned as the rest.
     """
 
@@ -38,6 +43,8 @@ class FlowRecord:
         self._share = 1.0
         self._last = -1
         """step of the last moment"""
+        self._speed = 0.0
+        """RMS speed at the last look, m/s"""
         self.moments: list[Moment] = []
         self._changes: list[float] = []
         """between each moment and the next"""
@@ -54,6 +61,17 @@ class FlowRecord:
         self._changes = state["changes/"].tolist()
         moments = {name.partition("/")[2]: array for name, array in state.items() if "moments/" in name}
         self.moments = [_owned(moment) for moment in moments_of_arrays(moments)]
+
+    def look(self, simulation: Simulation) -> None:
+        """Add the present step if enough may have changed since the last moment."""
+        mass, doubled, _ = kinetics(simulation.particles.mass, simulation.particles.velocity)
+        before, self._speed = self._speed, math.sqrt(doubled / mass)
+        if self.moments:
+            passed = simulation.time - self.moments[-1].time
+            moved = max(before, self._speed) * passed / self._height
+            if moved + STANDSTILL * passed / self._until < LEAST:  # what is not a number is kept
+                return
+        self.add(simulation)
 
     def add(self, simulation: Simulation) -> None:
         """Add the present step, unless it is there; another moment may go for it."""
@@ -100,8 +118,9 @@ class FlowRecord:
                 before.number, after.number, assume_unique=True, return_indices=True
             )
             a, b = a[of_a], b[of_b]
-        moved = b - a
-        rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = b - a
+            rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
         # What diverges has no displacement: its moments stay, since a guard is about to stop the run.
         return STANDSTILL * passed + (float(rms) / self._height if np.isfinite(rms) else 1.0)
 

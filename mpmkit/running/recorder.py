@@ -71,7 +71,7 @@ class Recorder:
         if self.frames is not None and self._frames_due.passed(now):
             self.add_last_frame()
         if self.flow is not None and self._flow_due.passed(now):
-            self.flow.add(self.simulation)
+            self.flow.look(self.simulation)
 
     @property
     def components(self) -> dict[str, Stateful]:

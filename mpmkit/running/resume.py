@@ -17,6 +17,7 @@ from ..errors import CaseError
 from ..output import RunDirectory
 from ..output.checkpoints import Checkpoints
 from ..output.copies import Copies
+from ..output.near_runs import why_no_run
 from ..output.summary import ENDED, FINISHED
 from ..version import __version__
 from .case_files import named_files, portable
@@ -71,7 +72,9 @@ def case_of(directory: Path) -> Case:
     """
     file = RunDirectory(directory).case
     if not file.is_file():
-        raise CaseError(f"'{directory}' is not the directory of a run: it has no case.json")
+        path = RunDirectory(directory).path
+        why = "it has no case.json" if path.is_dir() else why_no_run(path)
+        raise CaseError(f"'{directory}' is not the directory of a run: {why}")
     Copies(RunDirectory(directory).meshes).check()
     return load_case(file)
 

@@ -206,8 +206,8 @@ def _report(recorder: Recorder, hurry: bool = False) -> None:
         LOGGER.info("drawing the report")  # it takes a few seconds
         from ..report import write_report
 
-        for picture in write_report(directory.path):
-            LOGGER.info("picture: %s", picture)
+        for path in write_report(directory.path):
+            LOGGER.info("%s: %s", "page" if path.suffix == ".html" else "picture", path)
     except KeyboardInterrupt:
         raise Undrawn(
             f"the run has ended and its results are in '{directory.path}', but it was told to stop before "

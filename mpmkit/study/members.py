@@ -105,7 +105,7 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
     changes = _outermost_first(common) | _outermost_first(own)
     title = ", ".join(f"{dimension} = {shown(label)}" for dimension, label in labels.items())
     try:
-        data, remarks = _with_laws(base, changes)
+        data, remarks = laws_made_over(base, changes)
         for path, value in changes.items():
             assign(data, path, value)
         case = parse_case(data, source="its case")
@@ -119,7 +119,7 @@ def _outermost_first(changes: Changes) -> Changes:
     return dict(sorted(changes.items(), key=lambda change: change[0].count(".")))
 
 
-def _with_laws(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:
+def laws_made_over(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:
     """The case with each material made over where a change names another law.
 
     Parameters that are changed along with the law count as given: the rest is fitted around them, and to the

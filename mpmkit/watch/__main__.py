@@ -17,7 +17,7 @@ from .server import Server
 def main() -> None:
     """Serve until whoever started this closes the pipe, which the system does as well where it dies."""
     with suppress(OSError, AttributeError):
-        os.nice(5)  # the run goes first; a lower priority would get no answer through on a busy machine
+        os.nice(2)  # the run goes first; much less would get no answer through on a busy machine
     server = Server(Path(sys.argv[1]), resumed="--resumed" in sys.argv[2:])
     print(server.address, flush=True)
     threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -13,9 +13,9 @@ from .so_far import NOTHING, SoFar
 
 END = "</body>"
 PREPARING = "The run is being prepared. The first run of a kind compiles its kernels, about half a minute."
-PAUSE = 100
-"""Least pause between two pages, as a multiple of the processor time that one took: they take no more than a
-hundredth of a core from the run."""
+PAUSE = 150
+"""Least pause between two pages, as a multiple of the processor time that one took: with what it costs to
+ask for news, they take no more than a hundredth of a core from the run."""
 
 
 class Pages:
@@ -27,6 +27,8 @@ class Pages:
         self._made: tuple[str, str] | None = None
         self.ended = False
         """whether the run has ended: its last page does not wait"""
+        self._warm = False
+        """whether a page has been made before"""
         self._not_before = 0.0
         """when the next page may be made, by the monotonic clock"""
 
@@ -49,7 +51,9 @@ class Pages:
             if self._made is None or (self._made[0] != version and (now >= self._not_before or self.ended)):
                 spent = clock.process_time()
                 self._made = self._make(version)
-                self._not_before = clock.monotonic() + PAUSE * (clock.process_time() - spent)
+                if self._warm:  # the first page also loads what the others have there
+                    self._not_before = clock.monotonic() + PAUSE * (clock.process_time() - spent)
+                self._warm = self._made[0] != NOTHING
             return self._made
 
     def _make(self, version: str) -> tuple[str, str]:

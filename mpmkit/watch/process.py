@@ -38,7 +38,7 @@ class Watch:
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
-            **({"process_group": 0} if os.name == "posix" else {}),
+            process_group=0 if os.name == "posix" else None,
         )
         threading.Thread(target=self._pass_on, args=(self._process,), daemon=True).start()
         return self

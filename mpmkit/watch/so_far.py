@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..output import RunDirectory
+from ..output.netcdf import read_scalars
 
 MOST_ROWS = 1000
 """Of a history that is sent: a screen has no more columns."""
@@ -95,16 +96,13 @@ def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
     Raises:
         OSError, RuntimeError: there is none at the path, or a part of one.
     """
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        count = file.dimensions["time"].size
-        rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(int)) if count else []
-        found = {
-            name: Series(one.long_name, one.units, _listed(np.ma.filled(one[:], np.nan)[rows]))
-            for name, one in file.variables.items()
-            if one.dimensions == ("time",)
-        }
+    scalars = read_scalars(path)
+    count = len(scalars["time"][0])
+    rows = np.unique(np.linspace(0, max(0, count - 1), min(count, MOST_ROWS)).round().astype(int))
+    found = {
+        name: Series(long_name, units, _listed(values[rows]))
+        for name, (values, long_name, units) in scalars.items()
+    }
     return found.pop("time").values, found
 
 

@@ -15,24 +15,14 @@ ROWS = 800
 DIGITS = 7
 MM = 1e3
 
-CHARTS: dict[str, tuple[str, str, float, dict[str, str]]] = {
-    "shape": (
-        "Spread and height",
-        "mm",
-        MM,
-        {"spread_diameter": "spread", "height": "height", "axis_height": "height on the axis"},
-    ),
-    "speed": ("Speed", "m/s", 1.0, {"max_speed": "largest speed"}),
-}
-"""Charts: title, unit, how many of it are one of the history's, and the curves."""
+LARGE = 10.0
+"""m, from which on lengths are drawn in m."""
 
 
 def section(source: Source) -> Section | None:
     """Charts with a cursor that reads values."""
-    charts = {}
-    for name, (title, unit, scale, curves) in CHARTS.items():
-        if found := chart(source, title, unit, {label: (key, scale) for key, label in curves.items()}):
-            charts[name] = found
+    drawn = {"shape": _shape(source), "speed": _speed(source)}
+    charts = {name: chart for name, chart in drawn.items() if chart is not None}
     if not charts:
         return None
     body = charts_side_by_side({name: f"{of['title']} against time" for name, of in charts.items()})
@@ -41,6 +31,21 @@ def section(source: Source) -> Section | None:
         "time. Drag across to enlarge a part, and double-click to see all again." + thinned(source)
     )
     return Section("histories", "Histories", body, {"charts": charts})
+
+
+def _shape(source: Source) -> dict[str, Any] | None:
+    """Spread, or the width of what is no slump test, and heights."""
+    wide = source.results.series("spread_diameter")
+    large = wide is not None and np.nanmax(wide) >= LARGE
+    unit, scale = ("m", 1.0) if large else ("mm", MM)
+    across = "width" if source.space.name == "plane-strain" else "spread"
+    names = {across: "spread_diameter", "height": "height", "height on the axis": "axis_height"}
+    title = f"{across.capitalize()} and height"
+    return chart(source, title, unit, {label: (name, scale) for label, name in names.items()})
+
+
+def _speed(source: Source) -> dict[str, Any] | None:
+    return chart(source, "Speed", "m/s", {"largest speed": ("max_speed", 1.0)})
 
 
 def thinned(source: Source) -> str:

@@ -17,7 +17,7 @@ from ...registry.blame import blaming_plugins
 from .source import Source
 
 MOST_PARTS = 12_000
-"""Triangles or segments of a drawing on the page, at the most."""
+"""Triangles or segments of all drawings on the page, about, at the most."""
 LOOKS = 6
 """Drawings of a wall that moves as a whole among which the most complete is looked for."""
 NOT_THERE = -1
@@ -26,15 +26,15 @@ NOT_THERE = -1
 def walls_of(source: Source) -> list[dict[str, Any]]:
     """For each wall its drawings, and for each moment which of them is seen, how turned and how shifted."""
     names = dict.fromkeys(name for walls in source.results.walls.values() for name in walls)
-    found = []
+    found, most = [], MOST_PARTS // max(1, len(names))
     for name in names:
         files = {time: walls[name] for time, walls in source.results.walls.items() if name in walls}
-        shapes, places = _moving(source, name, files) or _as_drawn(source, files)
+        shapes, places = _moving(source, name, files, most) or _as_drawn(source, files, most)
         found.append({"name": name, "shapes": shapes, "places": places})
     return found
 
 
-def _moving(source: Source, name: str, files: dict[float, Path]) -> tuple[list, list] | None:
+def _moving(source: Source, name: str, files: dict[float, Path], most: int) -> tuple[list, list] | None:
     """Of a wall whose motion is the framework's: one drawing, and its motion; None of any other."""
     case, dim = source.case, source.space.dim
     wall = None if case is None else case.walls.get(name)
@@ -64,7 +64,7 @@ def _moving(source: Source, name: str, files: dict[float, Path]) -> tuple[list, 
             for turn, moment in zip(turns, source.moments, strict=True)
         ]
     places = [_place(0 if seen else NOT_THERE, *pose) for seen, pose in zip(there, poses, strict=True)]
-    return [_shape(points, parts)], places
+    return [_shape(points, parts, most)], places
 
 
 def _some(files: dict[float, Path]) -> list[tuple[float, Path]]:
@@ -74,10 +74,10 @@ def _some(files: dict[float, Path]) -> list[tuple[float, Path]]:
     return listed[:: max(1, len(listed) // LOOKS)]
 
 
-def _as_drawn(source: Source, files: dict[float, Path]) -> tuple[list, list]:
+def _as_drawn(source: Source, files: dict[float, Path], most: int) -> tuple[list, list]:
     """Of any other wall: its drawing at the frame before."""
     paths = list(dict.fromkeys(files.values()))
-    shapes = [_shape(*_drawn(path, source.space.dim)) for path in paths]
+    shapes = [_shape(*_drawn(path, source.space.dim), most // len(paths)) for path in paths]
     frames = sorted(source.results.walls)
     eye, origin = np.eye(source.space.dim), np.zeros(source.space.dim)
     places = []
@@ -98,16 +98,16 @@ def _place(shape: int, turn: np.ndarray, shift: np.ndarray) -> list[float]:
     return [shape, *(float(f"{value:.7g}") for value in (*turn.ravel(), *shift))]
 
 
-def _shape(points: np.ndarray, parts: np.ndarray) -> dict[str, str]:
-    points, parts = _coarser(points, parts)
+def _shape(points: np.ndarray, parts: np.ndarray, most: int) -> dict[str, str]:
+    points, parts = _coarser(points, parts, most)
     return {"points": _text(points, np.float32), "parts": _text(parts, np.uint32)}
 
 
-def _coarser(points: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _coarser(points: np.ndarray, parts: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """The drawing with points that are near each other made one, until it has few enough parts."""
     extent = np.ptp(points, axis=0).max()
     cells = 256
-    while len(parts) > MOST_PARTS and cells > 4:
+    while len(parts) > most and cells > 4:
         cell = np.floor((points - points.min(axis=0)) / extent * cells).astype(np.int64)
         _, first, of = np.unique(cell, axis=0, return_index=True, return_inverse=True)
         merged = of.ravel()[parts]

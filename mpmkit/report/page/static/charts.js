@@ -58,7 +58,7 @@ class Chart {
       width: this.width(),
       height: HEIGHT,
       legend: { show: false },
-      scales: { x: { time: false, ...scale }, y: { ...scale, range: data.logarithmic ? undefined : roomy } },
+      scales: { x: { time: false, ...scale, ...(data.names ? { range: decades } : {}) }, y: { ...scale, range: data.logarithmic ? decades : roomy } },
       axes: [
         { ...axis, label: data.xUnit ? `${data.xLabel} (${data.xUnit})` : data.xLabel, labelSize: 20, size: 30 },
         { ...axis, size: 62 },
@@ -139,6 +139,7 @@ class Chart {
 
   listen() {
     this.plot.addEventListener('keydown', (event) => {
+      this.reading.setAttribute('aria-live', 'polite'); // whoever reads by keys may be listening
       const step = { ArrowLeft: -1, ArrowRight: 1, PageUp: -20, PageDown: 20 }[event.key];
       if (event.key === 'Home') this.moveTo(0);
       else if (event.key === 'End') this.moveTo(this.data.x.length - 1);
@@ -204,6 +205,13 @@ function decimals(step) {
     if (Math.abs(whole - Math.round(whole)) < 1e-6 * whole) return digits;
   }
   return 9;
+}
+
+/** Whole powers of ten around values. */
+function decades(_, low, high) {
+  if (!(low > 0)) return [0.1, 10];
+  const [from, to] = [Math.floor(Math.log10(low) + 1e-9), Math.ceil(Math.log10(high) - 1e-9)];
+  return [Math.pow(10, from), Math.pow(10, Math.max(to, from + 1))];
 }
 
 /** The range of values with some room; from 0 where nothing is below it. */

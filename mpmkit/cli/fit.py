@@ -1,0 +1,101 @@
+"""``mpmkit fit``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from . import options
+from .paths import PATH
+from .printing import echo
+
+
+@click.command("fit")
+@click.argument("fit", type=PATH)
+@click.option("--out", type=PATH, metavar="DIR", help="The fit's directory; default: runs/<fit name>.")
+@click.option(
+    "--overwrite", is_flag=True, help="Replace the result of another fit in the directory; its runs are kept."
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    help="Runs at once; default: as many as this machine's cores hold.",
+)
+@click.option("--threads", type=click.IntRange(min=1), help="Threads of each run; default: as the fit says.")
+@options.scheduler
+@options.quiet
+def command(
+    fit: str,
+    out: str | None,
+    overwrite: bool,
+    workers: int | None,
+    threads: int | None,
+    scheduler: str | None,
+    quiet: bool,
+) -> None:
+    """Find the parameters of cases from the measurements that FIT describes.
+
+    Runs that are kept in the directory, of the same case and with the same versions, are not run again.
+    """
+    from contextlib import nullcontext
+
+    from ..errors import Interrupted
+    from ..fitting import fit as find
+    from ..fitting import load_fit
+    from ..running.interrupts import take_signals_as_interrupts
+
+    wanted = load_fit(fit)
+    directory = Path(out) if out is not None else Path("runs") / wanted.name
+    take_signals_as_interrupts()
+    if scheduler is None:
+        cluster: Any = nullcontext()
+    else:
+        from ..study.cluster import cluster as on_cluster
+
+        cluster = on_cluster(scheduler)
+    with cluster as executor:
+        try:
+            result = find(
+                wanted,
+                directory,
+                overwrite=overwrite,
+                threads=threads,
+                workers=workers,
+                executor=executor,
+                listen=None if quiet else _Counter(),
+            )
+        except KeyboardInterrupt:
+            raise Interrupted(
+                f"interrupted; the runs that had finished are in '{directory}', and the same command goes "
+                "on from there"
+            ) from None
+    if quiet:
+        return
+    for found in result.parameters.values():
+        known = "" if found.identifiable else ", not known from these measurements"
+        unit = f" {found.unit}" if found.unit else ""
+        echo(
+            f"{found.path} = {found.value:.4g}{unit}, from {found.low:.4g} to {found.high:.4g} "
+            f"at {100 * found.level:g} %{known}"
+        )
+    for sentence in result.sentences:
+        echo(sentence)
+    echo(f"{result.runs} runs; results in {directory}")
+
+
+class _Counter:
+    """A line for each run that has ended."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def __call__(self, member: Any, outcome: Any) -> None:
+        from .display import say
+
+        self._count += 1
+        seconds = outcome.cost.get("wall_seconds")
+        took = "" if seconds is None else f", {seconds:.1f} s"
+        cell = 1e3 * member.case.grid.cell_size
+        say(f"run {self._count}, cells of {cell:.3g} mm: {outcome.fate}{took}")

@@ -1,0 +1,7 @@
+"""From measurements to materials: parameters of cases fitted to what was measured."""
+
+from .load import load_fit, parse_fit
+from .model import Fit
+from .run_fit import fit
+
+__all__ = ["Fit", "fit", "load_fit", "parse_fit"]

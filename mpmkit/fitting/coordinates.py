@@ -1,0 +1,82 @@
+"""Parameters as coordinates from 0, their lower bound, to 1, their upper one, along their scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from .model import Parameter
+
+DIGITS = 6
+"""Digits of a value that is run: what differs in less is the same run."""
+FACTOR = 0.1
+"""Change of a parameter, as part of it, over which derivatives are taken: beyond the noise of a run."""
+LARGEST_STEP = 0.1
+"""Largest such change along the coordinate."""
+
+
+class Coordinates:
+    """The box of the parameters.
+
+    Args:
+        parameters: by path.
+    """
+
+    def __init__(self, parameters: Mapping[str, Parameter]) -> None:
+        self.paths = list(parameters)
+        self.parameters = list(parameters.values())
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    def value(self, index: int, u: float) -> float:
+        """Value of a parameter at its coordinate, in its unit."""
+        p = self.parameters[index]
+        if p.scale == "log":
+            return float(p.low * (p.high / p.low) ** u)
+        return float(p.low + (p.high - p.low) * u)
+
+    def coordinate(self, index: int, value: float) -> float:
+        """Coordinate of a value; beyond the bounds it is below 0 or above 1."""
+        p = self.parameters[index]
+        if p.scale == "log":
+            return math.log(value / p.low) / math.log(p.high / p.low)
+        return (value - p.low) / (p.high - p.low)
+
+    def values(self, u: np.ndarray) -> dict[str, float]:
+        """Values by path at a point, rounded to what is told apart, and within the bounds."""
+        found = {}
+        for index, (path, p) in enumerate(zip(self.paths, self.parameters, strict=True)):
+            rounded = float(f"{self.value(index, float(u[index])):.{DIGITS}g}")
+            found[path] = min(max(rounded, p.low), p.high)
+        return found
+
+    def steps(self, u: np.ndarray) -> np.ndarray:
+        """Steps of finite differences at a point, each towards the middle of the box."""
+        steps = []
+        for index, p in enumerate(self.parameters):
+            if p.scale == "log":
+                step = math.log(1 + FACTOR) / math.log(p.high / p.low)
+            else:
+                step = FACTOR * abs(self.value(index, float(u[index]))) / (p.high - p.low)
+            step = min(max(step, LARGEST_STEP / 10), LARGEST_STEP)
+            steps.append(step if u[index] <= 0.5 else -step)
+        return np.array(steps)
+
+    def prior_residuals(self, u: np.ndarray) -> np.ndarray:
+        """Distances from the priors over their deviations, ``(…, p)``, of the parameters that have one.
+
+        Along a logarithmic scale the deviation is that of the logarithm, deviation/value.
+        """
+        found = []
+        for index, p in enumerate(self.parameters):
+            if p.prior is not None:
+                mean, deviation = self.coordinate(index, p.prior.value), p.prior.deviation
+                if p.scale == "log":
+                    width = deviation / p.prior.value / math.log(p.high / p.low)
+                else:
+                    width = deviation / (p.high - p.low)
+                found.append((u[..., index] - mean) / width)
+        return np.stack(found, axis=-1) if found else np.zeros((*u.shape[:-1], 0))

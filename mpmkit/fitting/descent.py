@@ -1,0 +1,92 @@
+"""Least squares on runs: SciPy's bounded trust region, its derivatives by runs side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .coordinates import Coordinates
+from .misfit import Misfit
+from .runs import Point, Runs, require
+
+TOLERANCE = 3e-3
+"""Relative change of χ², and of the coordinates, below which a search has come to its end."""
+MOST_STEPS = 8
+"""Points that a stage tries at the most, beside those of derivatives."""
+REFUSED = 1e3
+"""Residual of every row where a guard stopped the run: the step is taken back and halved."""
+
+
+class Descent:
+    """A search in one stage.
+
+    Each point is run together with its neighbours, which are needed next unless the step is refused: that
+    keeps all cores at work, and makes the runs the same on any number of them.
+
+    Args:
+        runs: of the tests.
+        stage: number of the stage.
+        coordinates: of the parameters.
+    """
+
+    def __init__(self, runs: Runs, stage: int, coordinates: Coordinates) -> None:
+        self._runs, self._stage, self._coordinates = runs, stage, coordinates
+
+    def points(self, u: np.ndarray) -> list[Point]:
+        """The point, and its neighbour along each coordinate."""
+        steps = np.diag(self._coordinates.steps(u))
+        return self._runs.at(
+            self._stage, [self._coordinates.values(place) for place in (u, *(u + step for step in steps))]
+        )
+
+    def from_(self, start: np.ndarray, misfit: Callable[[Point], Misfit]) -> np.ndarray:
+        """Coordinates of the least misfit that is found.
+
+        Args:
+            start: where it begins.
+            misfit: made at the first point, and kept for the whole search.
+
+        Raises:
+            GuardStop: a guard stopped the first run, or one that a derivative needs.
+            Spent: the budget is at its end.
+        """
+        inside = np.clip(start, 1e-6, 1 - 1e-6)
+        first = self.points(inside)[0]
+        require(first)
+        measure = misfit(first)
+
+        def residuals(u: np.ndarray) -> np.ndarray:
+            point = self.points(u)[0]
+            if point.predicted is None:
+                return np.full(len(measure) + len(self._coordinates.prior_residuals(u)), REFUSED)
+            return np.concatenate(
+                [measure.residuals(point.predicted.value), self._coordinates.prior_residuals(u)]
+            )
+
+        def slopes(u: np.ndarray) -> np.ndarray:
+            here, *others = (require(point).value for point in self.points(u))
+            steps = self._coordinates.steps(u)
+            likely = np.stack(
+                [measure.whitened(other - here) / h for other, h in zip(others, steps, strict=True)], axis=1
+            )
+            return np.vstack([likely, self._prior_slopes(u)])
+
+        found = least_squares(
+            residuals,
+            inside,
+            slopes,
+            bounds=(0.0, 1.0),
+            method="trf",
+            ftol=TOLERANCE,
+            xtol=TOLERANCE,
+            gtol=None,
+            max_nfev=MOST_STEPS,
+        )
+        return np.asarray(found.x)
+
+    def _prior_slopes(self, u: np.ndarray) -> np.ndarray:
+        at = self._coordinates.prior_residuals
+        small = 1e-6 * np.eye(len(u))
+        return np.stack([(at(u + step) - at(u - step)) / 2e-6 for step in small], axis=1)

@@ -1,0 +1,112 @@
+"""What further measurement would tell most, of all that the runs record."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .quantities import FIGURES, LENGTHS, Quantity
+from .runs import Point, Test
+from .solve import Solution
+from .surrogate import Surrogate
+from .words import Names
+
+OF_LENGTHS, OF_TIMES = 0.02, 0.05
+"""Relative uncertainties with which a length and a time are taken to be measured."""
+PARTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)
+"""Times, as part of the run, at which histories are tried."""
+HISTORIES = ("spread_diameter", "height")
+WORTH = 0.9
+"""Part of the interval that must be left at the most, for a measurement to be worth naming."""
+
+
+@dataclass(frozen=True)
+class Further:
+    """A measurement that was not made."""
+
+    test: str
+    words: str
+    parameter: str
+    uncertainty: float
+    """relative, with which it is taken to be made"""
+    left: float
+    """part of the parameter's standard deviation that would be left"""
+
+
+def further(solution: Solution) -> list[Further]:
+    """Measurements by what they would tell of the parameter that is known worst, the best first.
+
+    One with the slope g and the uncertainty s brings the covariance P of the parameters to
+    P − P g gᵀ P/(s² + gᵀ P g).
+    """
+    covariance = solution.survey.likelihood.covariance(solution.survey.best) * solution.survey.widened
+    worst = int(np.argmax(np.diag(covariance)))
+    points = [p for p in solution.runs.points if p.stage == solution.stage and p.predicted is not None]
+    u = np.array(
+        [[solution.coordinates.coordinate(i, v) for i, v in enumerate(p.values.values())] for p in points]
+    )
+    distance = np.sum((u - solution.survey.best) ** 2 / np.diag(covariance), axis=1)
+    weight = 1 / (1 + distance / 4)
+    found = []
+    for number, test in enumerate(solution.runs.tests):
+        quantities = _candidates(test, solution)
+        y = _rows(solution, points, number, quantities)
+        for index, quantity in enumerate(quantities):
+            row = y[:, index]
+            if not np.isfinite(row).all() or not np.abs(row).max() > 0:
+                continue
+            part = OF_TIMES if quantity.is_time else OF_LENGTHS
+            known = Surrogate(u, row[:, None], weight, np.array([np.abs(row).max()]))
+            slope = known.slopes(solution.survey.best)[0]
+            noise = math.hypot(part * abs(float(known(solution.survey.best)[0])), float(known.error[0]))
+            gain = covariance @ slope
+            left = 1 - gain[worst] ** 2 / (noise**2 + slope @ gain) / covariance[worst, worst]
+            found.append(
+                Further(
+                    test.name,
+                    quantity.words,
+                    solution.coordinates.paths[worst],
+                    part,
+                    math.sqrt(max(left, 0.0)),
+                )
+            )
+    return sorted(found, key=lambda one: one.left)
+
+
+def sentence(found: list[Further], names: Names) -> str:
+    """The best of them in words."""
+    if not found or found[0].left > WORTH:
+        return "Nothing else that these runs record would tell much more; another kind of test would."
+    best = found[0]
+    return (
+        f"The {best.words} in test '{best.test}' would tell most beside what was measured: known to "
+        f"{100 * best.uncertainty:g} %, it would leave {100 * best.left:.0f} % of the uncertainty of the "
+        f"{names.name(best.parameter)}."
+    )
+
+
+def _candidates(test: Test, solution: Solution) -> list[Quantity]:
+    measured = {one.quantity.variable for one in test.measured}
+    until = test.stages[-1].case.end
+    figures = [Quantity(name) for name in FIGURES if name in (*LENGTHS, "t500", "t500_from_lift")]
+    if all(one.quantity.times is not None for one in test.measured):
+        figures = [one for one in figures if one.is_time]  # the runs end with the curve, and not at rest
+    histories = [Quantity(name, (round(part * until, 6),)) for name in HISTORIES for part in PARTS]
+    return [one for one in figures + histories if one.variable not in measured]
+
+
+def _rows(solution: Solution, points: list[Point], number: int, quantities: list[Quantity]) -> np.ndarray:
+    """What each run gives, ``(k, q)``; not a number where it never came to be."""
+    rows = np.full((len(points), len(quantities)), np.nan)
+    for place, point in enumerate(points):
+        member = point.members[number]
+        history, summary = solution.runs.history(member), solution.runs.record(member)["summary"]
+        if history is None:
+            continue
+        for index, quantity in enumerate(quantities):
+            if quantity.is_time and summary.get(quantity.variable) is None:
+                continue
+            rows[place, index] = quantity.of_run(summary, history)[0][0]
+    return rows

@@ -1,0 +1,57 @@
+"""Reading fit files, to the standard of case files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from ..case.load import count_from, name_from, read_json
+from ..case.messages import explain
+from ..errors import CaseError
+from ..registry import installed
+from .model import Fit
+
+
+def load_fit(path: str | Path) -> Fit:
+    """Read and validate a fit file; the paths of its cases and of its CSV files count from there.
+
+    Raises:
+        CaseError: the fit cannot be read, or says something that no fit can.
+    """
+    data = read_json(path, "fit")
+    if isinstance(data, dict):
+        data.setdefault("name", name_from(path))
+        _count_from(Path(path).parent, data)
+    return parse_fit(data, source=str(path))
+
+
+def parse_fit(data: Any, source: str = "fit") -> Fit:
+    """Validate a fit given as the content of a JSON file; see ``load_fit``."""
+    if not isinstance(data, dict):
+        raise CaseError(f"{source}: a fit must be a JSON object")
+    data = {key: value for key, value in data.items() if key != "$schema"}
+    try:
+        return Fit.model_validate_json(json.dumps(data, allow_nan=False))
+    except ValidationError as error:
+        raise CaseError(f"{source}: {explain(error, data, Fit, installed(), 'fit')}") from None
+    except (TypeError, ValueError, RecursionError) as error:
+        raise CaseError(f"{source}: {error}") from None
+
+
+def _count_from(folder: Path, data: dict[str, Any]) -> None:
+    """Make the relative paths of cases, meshes and curves start from the folder of the fit file."""
+    tests = data.get("tests")
+    for test in tests.values() if isinstance(tests, dict) else []:
+        if not isinstance(test, dict):
+            continue
+        if isinstance(test.get("case"), str):
+            test["case"] = str(folder / test["case"])
+        elif isinstance(test.get("case"), dict):
+            count_from(folder, test["case"])
+        measurements = test.get("measurements")
+        for measurement in measurements if isinstance(measurements, list) else []:
+            if isinstance(measurement, dict) and isinstance(measurement.get("file"), str):
+                measurement["file"] = str(folder / measurement["file"])

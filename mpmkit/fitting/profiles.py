@@ -1,0 +1,157 @@
+"""Profile likelihoods on the surrogate: intervals that need no bell curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import gammaincc, gammaincinv
+
+from .coordinates import Coordinates
+from .misfit import Misfit
+from .surrogate import Surrogate
+
+PLACES = 41
+"""Places along a coordinate at which a profile is computed, beside as many near its best."""
+SMALL = 1e-4
+"""Change of a coordinate over which the polynomial is differenced."""
+ITERATIONS = 60
+UNIFORM = 12.0
+"""1/variance of a coordinate of which nothing is known but that it is from 0 to 1."""
+DOUBTFUL = 0.05
+"""Probability of a misfit so large by chance, below which the stated uncertainties are not believed."""
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What is known of one parameter, along its coordinate."""
+
+    best: float
+    low: float
+    high: float
+    low_at: np.ndarray
+    """the point of least χ² with the coordinate at the lower end, ``(n,)``"""
+    high_at: np.ndarray
+    low_open: bool
+    """whether the interval goes on beyond the lower bound"""
+    high_open: bool
+    place: np.ndarray
+    """places along the coordinate, ``(p,)``"""
+    excess: np.ndarray
+    """Δχ² there, the other parameters at their best, ``(p,)``"""
+
+
+class Likelihood:
+    """χ² on the surrogate, anywhere in the box, for many points at once.
+
+    The surrogate is linear in its coefficients, so that the residuals are t(u) A − b with the terms t of the
+    polynomial. A QR decomposition leaves as many of them as there are terms, and one more, with the same χ².
+
+    Args:
+        surrogate: of the finest model.
+        misfit: of the measurements.
+        coordinates: of the parameters.
+    """
+
+    def __init__(self, surrogate: Surrogate, misfit: Misfit, coordinates: Coordinates) -> None:
+        self.surrogate, self.misfit, self.coordinates = surrogate, misfit, coordinates
+        rows = np.vstack([surrogate.coefficients, -misfit.value[None]])
+        self._short = np.transpose(np.linalg.qr(misfit.whitened(rows.T), mode="r"))
+
+    def residuals(self, u: np.ndarray) -> np.ndarray:
+        """Numbers whose squares add up to χ², ``(…, q)``, at points ``(…, n)``: priors come last."""
+        terms = self.surrogate.terms(u)
+        own = np.concatenate([terms, np.ones((*terms.shape[:-1], 1))], axis=-1) @ self._short
+        return np.concatenate([own, self.coordinates.prior_residuals(u)], axis=-1)
+
+    def chi2(self, u: np.ndarray) -> np.ndarray:
+        """χ² with the priors, ``(…,)``."""
+        return np.sum(self.residuals(u) ** 2, axis=-1)
+
+    def slopes(self, u: np.ndarray) -> np.ndarray:
+        """dr/du, ``(…, q, n)``."""
+        steps = SMALL * np.eye(u.shape[-1])
+        return np.stack(
+            [(self.residuals(u + step) - self.residuals(u - step)) / (2 * SMALL) for step in steps], axis=-1
+        )
+
+    def covariance(self, u: np.ndarray) -> np.ndarray:
+        """Of the coordinates at a point, ``(n, n)``, bounded by what the box says."""
+        slopes = self.slopes(u)
+        return np.linalg.inv(slopes.T @ slopes + UNIFORM * np.eye(len(u)))
+
+    def minimum(self, near: np.ndarray) -> np.ndarray:
+        """The point of least χ² near another one, ``(n,)``."""
+        return self._least(near[None], np.ones(len(near), dtype=bool))[0]
+
+    def _least(self, u: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Points of least χ² in the box, ``(k, n)``, from as many starts: Levenberg and Marquardt's method.
+
+        Coordinates that are not ``free``, ``(n,)``, stay; so does one at a bound beyond which χ² falls.
+        """
+        unit = np.eye(u.shape[1])
+        u, chi2, damping = np.clip(u, 0, 1), self.chi2(np.clip(u, 0, 1)), np.full(len(u), 1e-3)
+        for _ in range(ITERATIONS):
+            r, slopes = self.residuals(u), self.slopes(u)
+            gradient = np.einsum("kqn,kq->kn", slopes, r)
+            held = ~free | ((u <= 0) & (gradient > 0)) | ((u >= 1) & (gradient < 0))
+            matrix = np.einsum("kqn,kqm->knm", slopes, slopes)
+            size = damping * (1 + np.trace(matrix, axis1=1, axis2=2))
+            matrix += size[:, None, None] * unit
+            matrix = np.where(held[:, :, None] | held[:, None, :], unit, matrix)
+            change = np.linalg.solve(matrix, np.where(held, 0.0, -gradient)[..., None])[..., 0]
+            tried = np.clip(u + change, 0, 1)
+            found = self.chi2(tried)
+            better = found <= chi2
+            u, chi2 = np.where(better[:, None], tried, u), np.where(better, found, chi2)
+            damping = np.where(better, damping / 5, np.minimum(damping * 5, 1e8))
+            if np.abs(np.where(better[:, None], change, 0.0)).max() < 1e-9 and better.all():
+                break
+        return u
+
+    def interval(self, index: int, best: np.ndarray, crit: float) -> Interval:
+        """Where the profile of a coordinate lies less than ``crit`` above its least value."""
+        width = float(np.sqrt(self.covariance(best)[index, index]))
+        near = best[index] + width * np.linspace(-4, 4, PLACES)
+        place = np.unique(np.clip(np.concatenate([np.linspace(0, 1, PLACES), near, [best[index]]]), 0, 1))
+        middle = int(np.searchsorted(place, best[index]))
+        free = np.arange(len(best)) != index
+        along = self.covariance(best)[:, index]
+        valley = best + (place - best[index])[:, None] * (along / along[index])
+        straight = np.repeat(best[None], len(place), axis=0)
+        straight[:, index] = valley[:, index] = place
+        tried = [self._least(start, free) for start in (valley, straight)]
+        lower = (self.chi2(tried[0]) <= self.chi2(tried[1]))[:, None]
+        points = np.where(lower, *tried)
+        points[middle] = best
+        excess = self.chi2(points) - self.chi2(best)
+        low, low_at, low_open = _end(place, points, excess - crit, middle, -1)
+        high, high_at, high_open = _end(place, points, excess - crit, middle, +1)
+        return Interval(float(best[index]), low, high, low_at, high_at, low_open, high_open, place, excess)
+
+
+def _end(
+    place: np.ndarray, points: np.ndarray, above: np.ndarray, middle: int, way: int
+) -> tuple[float, np.ndarray, bool]:
+    """Where the excess first rises above the limit on one side, the point there, and whether it never "
+    "does."""
+    number = middle
+    while 0 <= number + way < len(place):
+        if above[number + way] > 0:
+            part = above[number] / (above[number] - above[number + way])
+            at = points[number] + part * (points[number + way] - points[number])
+            return float(place[number] + part * (place[number + way] - place[number])), at, False
+        number += way
+    return float(place[number]), points[number], True
+
+
+def critical(level: float) -> float:
+    """Δχ² of one parameter at a confidence level (Wilks's theorem)."""
+    return float(2 * gammaincinv(0.5, level))
+
+
+def widening(chi_squared: float, freedom: int) -> float:
+    """Birge's ratio squared, χ²/ν, where the misfit is larger than chance allows; else 1."""
+    if freedom < 1 or gammaincc(freedom / 2, chi_squared / 2) > DOUBTFUL:
+        return 1.0
+    return chi_squared / freedom

@@ -1,0 +1,197 @@
+"""What a fit found, as an object and as the content of ``fit.json``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray
+
+from ..version import __version__
+from . import further, laws, unknowable
+from .dataset import dataset
+from .flow_curve import FlowCurve
+from .model import Fit
+from .profiles import Interval
+from .solve import Solution
+from .words import Names
+
+
+@dataclass(frozen=True)
+class Found:
+    """A parameter with its interval."""
+
+    path: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    level: float
+    identifiable: bool
+    """whether the measurements bound it on both sides within the bounds of its search"""
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """What ``mpmkit.fit`` returns."""
+
+    fit: Fit
+    solutions: Mapping[str, Solution]
+    """of each law, the fit's own first"""
+    curves: list[FlowCurve] = field(default_factory=list)
+
+    @property
+    def solution(self) -> Solution:
+        return next(iter(self.solutions.values()))
+
+    @cached_property
+    def names(self) -> Names:
+        return names_of(self.solution)
+
+    @cached_property
+    def parameters(self) -> dict[str, Found]:
+        """Best values and intervals by path."""
+        return found_in(self.solution, self.fit.level)
+
+    @cached_property
+    def correlation(self) -> np.ndarray:
+        """Of the parameters, ``(n, n)``, in the order of ``parameters``."""
+        return unknowable.correlation(self.solution)
+
+    @cached_property
+    def dataset(self) -> xarray.Dataset:
+        """All runs."""
+        return dataset(self.fit, self.solutions)
+
+    @cached_property
+    def further(self) -> list[further.Further]:
+        """Measurements that were not made, the one that would tell most first."""
+        return further.further(self.solution)
+
+    @cached_property
+    def evidence(self) -> list[laws.Evidence]:
+        """The laws compared; empty where there is one alone."""
+        return laws.compare(dict(self.solutions)) if len(self.solutions) > 1 else []
+
+    @cached_property
+    def sentences(self) -> list[str]:
+        """What there is to say, in plain words."""
+        said = [*self.solution.said, *unknowable.sentences(self.solution, self.names)]
+        said.append(further.sentence(self.further, self.names))
+        for test, error in zip(self.solution.runs.tests, self.solution.errors, strict=True):
+            if error is None:
+                said.append(
+                    f"The error of the model of test '{test.name}' is not known and counts as 0: give "
+                    "model_error, or two stages."
+                )
+        if self.evidence:
+            said.append(laws.sentence(self.evidence))
+        return said
+
+    @property
+    def runs(self) -> int:
+        """Runs that the result was made of, kept ones included."""
+        slugs = {m.slug for s in self.solutions.values() for point in s.runs.points for m in point.members}
+        return len(slugs)
+
+    def as_json(self) -> dict[str, Any]:
+        """The content of ``fit.json``."""
+        solution, survey = self.solution, self.solution.survey
+        misfit = survey.likelihood.misfit
+        return {
+            "name": self.fit.name,
+            "description": self.fit.description,
+            "parameters": {path: _entry(found) for path, found in self.parameters.items()},
+            "correlation": {
+                path: dict(zip(solution.coordinates.paths, row.tolist(), strict=True))
+                for path, row in zip(solution.coordinates.paths, self.correlation, strict=True)
+            },
+            "runs": self.runs,
+            "misfit": {
+                "chi2": survey.chi2,
+                "numbers": len(misfit),
+                "widened_by": math.sqrt(survey.widened),
+                "runs_agree": survey.agrees,
+            },
+            "model_error": {
+                test.name: None if error is None else {"part": error.part, "source": error.source}
+                for test, error in zip(solution.runs.tests, solution.errors, strict=True)
+            },
+            "measurements": _measurements(solution),
+            "sentences": self.sentences,
+            "further": [vars(one) for one in self.further[:5]],
+            "laws": [
+                vars(one)
+                | {
+                    "parameters": {
+                        path: _entry(found)
+                        for path, found in found_in(self.solutions[one.law], self.fit.level).items()
+                    }
+                }
+                for one in self.evidence
+            ],
+            "mpmkit": __version__,
+        }
+
+
+def names_of(solution: Solution) -> Names:
+    """Names and units of the parameters of a solution."""
+    return Names(solution.coordinates.paths, solution.runs.tests[0].stages[-1].case)
+
+
+def found_in(solution: Solution, level: float) -> dict[str, Found]:
+    """Parameters of a solution with their intervals, by path."""
+    names = names_of(solution)
+    found = {}
+    for index, (path, interval) in enumerate(
+        zip(solution.coordinates.paths, solution.survey.intervals, strict=True)
+    ):
+        value, low, high = _values(solution, index, interval)
+        found[path] = Found(
+            path, names.unit(path), value, low, high, level, unknowable.identifiable(interval)
+        )
+    return found
+
+
+def _values(solution: Solution, index: int, interval: Interval) -> tuple[float, float, float]:
+    best, low, high = (
+        solution.coordinates.value(index, u) for u in (interval.best, interval.low, interval.high)
+    )
+    return best, low, high
+
+
+def _entry(found: Found) -> dict[str, Any]:
+    return {key: value for key, value in vars(found).items() if key != "path"}
+
+
+def _measurements(solution: Solution) -> list[dict[str, Any]]:
+    """Measured and fitted, of each measurement; of a curve the largest difference and the mean square one."""
+    found, start, total = [], 0, solution.survey.likelihood.misfit.total
+    for test in solution.runs.tests:
+        for one in test.measured:
+            rows = slice(start, start + len(one.value))
+            start = rows.stop
+            off = solution.fitted[rows] - one.value
+            entry: dict[str, Any] = {
+                "test": test.name,
+                "variable": one.quantity.words,
+                "unit": one.quantity.unit,
+            }
+            if one.is_curve:
+                entry |= {
+                    "rows": len(off),
+                    "largest_difference": float(np.abs(off).max()),
+                    "rms_difference": float(np.sqrt(np.mean(off**2))),
+                }
+            else:
+                entry |= {
+                    "measured": float(one.value[0]),
+                    "uncertainty": float(total[rows][0]),
+                    "fitted": float(solution.fitted[rows][0]),
+                }
+            found.append(entry)
+    return found

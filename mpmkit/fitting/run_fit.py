@@ -1,0 +1,151 @@
+"""``mpmkit.fit``: from measurements to parameters."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from ..errors import CaseError
+from ..study.execute import Listener
+from ..study.processes import cores, processes
+from .load import load_fit, parse_fit
+from .measurements import measured_in
+from .model import Alternative, Fit
+from .plausible import check
+from .runs import Purse, Runs, Spent, Test
+from .stages import check_path, stages_of
+
+
+def fit(
+    fit: Fit | Mapping[str, Any] | str | Path,
+    out: str | Path | None = None,
+    *,
+    overwrite: bool = False,
+    threads: int | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    listen: Listener | None = None,
+):
+    """Find the parameters of cases from measurements.
+
+    Least squares on the misfit over its uncertainty, χ² = (y − d)ᵀ C⁻¹ (y − d), in coarse models first and
+    then in finer ones, with derivatives by runs side by side; then intervals by the profile likelihood on a
+    polynomial through the runs of the finest model (docs/fit.md).
+
+    Args:
+        fit: a fit file, its content, or a ``Fit``.
+        out: directory to write, and to go on in; nothing is kept without one.
+        overwrite: whether the result of another fit in ``out`` may be replaced; its runs are kept in any
+        case. threads: of each run; default: as the fit says.
+        workers: runs at once on this machine; default: as many as its cores hold of ``threads``.
+        executor: of ``concurrent.futures``, runs them instead of processes of this machine.
+        listen: called with each run that has ended, and what came of it.
+
+    Returns:
+        A ``FitResult``: ``parameters`` by path with ``value``, ``low``, ``high``, ``level`` and
+        ``identifiable``,
+        ``correlation``, ``sentences``, ``further``, ``evidence`` (laws compared) and ``dataset`` (all runs).
+
+    Raises:
+        CaseError: bad input, a measurement that no run can give, or SciPy is not installed.
+        GuardStop: a guard stopped a run that cannot be done without.
+        OutputError: the directory cannot be written.
+    """
+    require_scipy()
+    from .directory import FitDirectory
+
+    wanted = fit if isinstance(fit, Fit) else load_fit(fit) if isinstance(fit, str | Path) else parse_fit(fit)
+    candidates = prepared(wanted)
+    threads = threads or wanted.threads
+    with ExitStack() as stack:
+        if out is None:
+            out = stack.enter_context(tempfile.TemporaryDirectory(prefix="mpmkit-fit-")) + "/fit"
+            kept = False
+        else:
+            kept = True
+        directory = FitDirectory(Path(out), overwrite)
+        stack.enter_context(directory.claimed(wanted))
+        if executor is None:
+            executor = stack.enter_context(processes(workers or max(1, cores() // threads), False))
+        result = _fitted(wanted, candidates, directory.store, threads, executor, listen)
+        if kept:
+            directory.write(result)
+        else:
+            _read_all(result)
+    return result
+
+
+def prepared(fit: Fit) -> dict[str, tuple[Alternative, list[Test]]]:
+    """What is fitted, by law, the fit's own first: all that can be wrong is found here, before anything runs.
+
+    Raises:
+        CaseError: one sentence that names the place in the fit file.
+    """
+    own = Alternative(parameters=fit.parameters)
+    found: dict[str, tuple[Alternative, list[Test]]] = {}
+    for name, alternative in {"": own, **fit.laws}.items():
+        tests = []
+        for test, entry in fit.tests.items():
+            measured = measured_in(test, entry)
+            stages = stages_of(test, entry, alternative.changes, measured)
+            check(test, stages[-1].case, measured)
+            tests.append(Test(test, stages, measured))
+        for path, parameter in alternative.parameters.items():
+            for one in tests:
+                check_path(one.stages[-1], path)
+                for end in (parameter.low, parameter.high):
+                    one.stages[-1].member({path: end})
+        if not name:
+            name = _law(tests[0])
+        if name in found:
+            raise CaseError(f"laws.{name} has the name of the law of the cases; call it something else")
+        found[name] = (alternative, tests)
+    return found
+
+
+def _law(test: Test) -> str:
+    """The law of the cases, as the one that the others are compared with."""
+    return test.stages[-1].case.bodies[0].material.law
+
+
+def _fitted(fit: Fit, candidates, store, threads: int, executor: Executor, listen: Listener | None):
+    from .coordinates import Coordinates
+    from .flow_curve import flow_curves
+    from .model_error import known_errors
+    from .result import FitResult
+    from .solve import solve
+
+    purse, solutions = Purse(fit.budget), {}
+    for name, (alternative, tests) in candidates.items():
+        runs = Runs(tests, store, threads, purse, executor, listen)
+        solutions[name] = solve(
+            runs, Coordinates(alternative.parameters), known_errors(fit, tests), fit.level
+        )
+    try:
+        curves = flow_curves(next(iter(solutions.values())), fit.level)
+    except Spent:
+        curves = []
+    return FitResult(fit, solutions, curves)
+
+
+def _read_all(result) -> None:
+    """What is read from the directory while it is there."""
+    _ = result.dataset, result.further, result.sentences, result.as_json()
+
+
+def require_scipy() -> None:
+    """Refuse to begin without SciPy.
+
+    Raises:
+        CaseError: it is not installed; the sentence says how to install it.
+    """
+    try:
+        import scipy.optimize  # noqa: F401
+    except ImportError:
+        raise CaseError(
+            "mpmkit fit needs scipy: pip install scipy, or pip install '.[fit]' in a clone of mpmkit"
+        ) from None

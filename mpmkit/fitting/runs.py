@@ -1,0 +1,192 @@
+"""Runs of all tests at points of the parameters: side by side, kept, and never made twice."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+
+from ..errors import GuardStop, MpmkitError
+from ..output.netcdf import read_dataset
+from ..study import execute
+from ..study.execute import Listener
+from ..study.members import Member
+from ..study.store import Store
+from ..study.work import FAILED
+from .measurements import Measured, Predicted, predicted
+from .model import Budget
+from .stages import Stage
+
+FINISHED = "finished"
+
+
+class Spent(Exception):
+    """The budget does not last for the next runs."""
+
+
+@dataclass(frozen=True)
+class Test:
+    """A test with its models and what was measured in it."""
+
+    __test__ = False  # for pytest, which would collect it by its name
+
+    name: str
+    stages: list[Stage]
+    measured: list[Measured]
+
+    def stage(self, number: int, of: int) -> Stage:
+        """Its model in a stage of all tests together; one with fewer models has its own last ones."""
+        return self.stages[max(0, len(self.stages) - of + number)]
+
+
+@dataclass(frozen=True)
+class Point:
+    """All tests at one point."""
+
+    stage: int
+    values: dict[str, float]
+    members: list[Member]
+    predicted: Predicted | None
+    """None where a guard stopped a run"""
+    sentence: str
+    """what there is to say of a run that a guard stopped"""
+
+
+class Purse:
+    """What is left of the budget.
+
+    Args:
+        budget: of the whole fit.
+    """
+
+    def __init__(self, budget: Budget) -> None:
+        self.spent = 0
+        self._runs = budget.runs
+        self._end = None if budget.minutes is None else clock.monotonic() + 60 * budget.minutes
+
+    def pay(self, runs: int) -> None:
+        """Take runs from the budget.
+
+        Raises:
+            Spent: there are not so many left, or the time is over.
+        """
+        if runs and (
+            self.spent + runs > self._runs or (self._end is not None and clock.monotonic() >= self._end)
+        ):
+            raise Spent
+        self.spent += runs
+
+
+class Runs:
+    """Runs of tests at points, kept in a store.
+
+    Args:
+        tests: of the material.
+        store: keeps what each run gave.
+        threads: of each run.
+        purse: what may be spent.
+        executor: runs them.
+        listen: called for each run that has ended.
+    """
+
+    def __init__(
+        self,
+        tests: Sequence[Test],
+        store: Store,
+        threads: int,
+        purse: Purse,
+        executor: Executor,
+        listen: Listener | None = None,
+    ) -> None:
+        self.tests = list(tests)
+        self.stages = max(len(test.stages) for test in tests)
+        self.points: list[Point] = []
+        self._store, self._threads, self._purse = store, threads, purse
+        self._executor, self._listen = executor, listen
+        self._histories: dict[str, xarray.Dataset] = {}
+        self._known: dict[tuple[int, tuple[float, ...]], Point] = {}
+
+    @property
+    def last(self) -> int:
+        """Number of the finest stage."""
+        return self.stages - 1
+
+    def at(self, stage: int, places: Sequence[dict[str, float]]) -> list[Point]:
+        """What the tests give at some places, in their order.
+
+        Raises:
+            Spent: the budget does not last for them.
+            MpmkitError: a run failed for the machine's sake; those that were done are kept.
+        """
+        keys = [(stage, tuple(values.values())) for values in places]
+        new = {key: values for key, values in zip(keys, places, strict=True) if key not in self._known}
+        members = {
+            key: [test.stage(stage, self.stages).member(values) for test in self.tests]
+            for key, values in new.items()
+        }
+        self.make([member for each in members.values() for member in each])
+        for key, values in new.items():
+            self._known[key] = self._point(stage, values, members[key])
+            self.points.append(self._known[key])
+        return [self._known[key] for key in keys]
+
+    def make(self, members: Sequence[Member]) -> None:
+        """Run what has not been run yet, side by side.
+
+        Raises:
+            Spent: the budget does not last for them.
+        """
+        waiting = {member.slug: member for member in members if not self._store.settled(member)}
+        self._purse.pay(len(waiting))
+        execute(
+            list(waiting.values()), self._store, self._threads, executor=self._executor, listen=self._listen
+        )
+
+    def history(self, member: Member) -> xarray.Dataset | None:
+        """History of a run; None where it left none."""
+        path = self._store.history(member)
+        if path is not None and member.slug not in self._histories:
+            self._histories[member.slug] = read_dataset(path)
+        return self._histories.get(member.slug)
+
+    def record(self, member: Member) -> dict:
+        """What ``member.json`` of a run holds."""
+        return self._store.outcome(member) or {}
+
+    def _point(self, stage: int, values: dict[str, float], members: list[Member]) -> Point:
+        parts = []
+        for test, member in zip(self.tests, members, strict=True):
+            record = self.record(member)
+            if record.get("fate", FAILED) == FAILED:
+                raise MpmkitError(
+                    f"test '{test.name}' with {said(values)}: the run failed: {record.get('sentence', '')}"
+                )
+            if record["fate"] != FINISHED:
+                return Point(stage, values, members, None, f"{record['fate']}: {record['sentence']}")
+            history = self.history(member)
+            assert history is not None
+            parts.append(predicted(test.measured, record["summary"], history))
+        both = Predicted(
+            np.concatenate([part.value for part in parts]), np.concatenate([part.scale for part in parts])
+        )
+        return Point(stage, values, members, both, "")
+
+
+def said(values: dict[str, float]) -> str:
+    """Values as a sentence names them."""
+    return ", ".join(f"{path} = {value:.4g}" for path, value in values.items())
+
+
+def require(point: Point) -> Predicted:
+    """What a point gives.
+
+    Raises:
+        GuardStop: a guard stopped a run there.
+    """
+    if point.predicted is None:
+        raise GuardStop("fit", f"the run with {said(point.values)} was stopped, {point.sentence}", step=0)
+    return point.predicted

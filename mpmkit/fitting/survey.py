@@ -1,0 +1,153 @@
+"""Runs around the best point, until the surrogate says there what runs say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .coordinates import Coordinates
+from .misfit import Misfit
+from .profiles import Interval, Likelihood, critical, widening
+from .runs import Point, Runs, Spent
+from .surrogate import Surrogate
+
+ROUNDS = 4
+"""Times that runs are added at the ends of the intervals."""
+AGREES = 0.5
+"""Part of the critical Δχ² by which the surrogate may miss a run at an end of an interval."""
+WIDE = 0.12
+"""Standard deviation of a coordinate from which on it is run from bound to bound."""
+FAR = 1.5
+"""Standard deviations from the best at which the first runs are made."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What the runs say around the best point."""
+
+    likelihood: Likelihood
+    best: np.ndarray
+    intervals: list[Interval]
+    chi2: float
+    widened: float
+    """χ²/ν, where it is more than chance allows; 1 elsewhere"""
+    agrees: bool
+    """whether runs at the ends of the intervals say what the surrogate says"""
+    spent: bool
+    """whether the budget ended before that"""
+
+
+class Surveyor:
+    """Puts runs where the intervals need them.
+
+    Args:
+        runs: of the tests.
+        stage: number of the finest model.
+        coordinates: of the parameters.
+        misfit: of the measurements, with what the surrogate misses them by, ``(m,)``.
+        level: of the intervals.
+    """
+
+    def __init__(
+        self,
+        runs: Runs,
+        stage: int,
+        coordinates: Coordinates,
+        misfit: Callable[[np.ndarray], Misfit],
+        level: float,
+    ) -> None:
+        self._runs, self._stage, self._coordinates = runs, stage, coordinates
+        self._misfit, self._level = misfit, level
+
+    def around(self, start: np.ndarray) -> Survey:
+        """Survey the neighbourhood of a point that a search has found.
+
+        Raises:
+            Spent: the budget does not even last for a straight line.
+        """
+        spent = False
+        try:
+            self._run(self._first(start))
+        except Spent:
+            spent = True
+        found = self._found(start, agrees=False, spent=spent)
+        for _ in range(0 if spent else ROUNDS):
+            ends = [end for interval in found.intervals for end in (interval.low_at, interval.high_at)]
+            try:
+                points = self._run([found.best, *ends])
+            except Spent:
+                return self._found(found.best, agrees=False, spent=True)
+            agrees = all(self._agrees(found, point) for point in points)
+            found = self._found(found.best, agrees, spent=False)
+            if agrees:
+                break
+        return found
+
+    def _run(self, places: list[np.ndarray]) -> list[Point]:
+        return self._runs.at(
+            self._stage, [self._coordinates.values(np.clip(place, 0, 1)) for place in places]
+        )
+
+    def _u(self, point: Point) -> np.ndarray:
+        return np.array(
+            [self._coordinates.coordinate(i, value) for i, value in enumerate(point.values.values())]
+        )
+
+    def _first(self, start: np.ndarray) -> list[np.ndarray]:
+        """Places on both sides of the best along every parameter, the others following its valley."""
+        likelihood = self._likelihood()
+        covariance = likelihood.covariance(start)
+        places = []
+        for index, step in enumerate(np.abs(self._coordinates.steps(start))):
+            width = float(np.sqrt(covariance[index, index]))
+            along = covariance[:, index] / covariance[index, index]
+            if width > WIDE:
+                to = np.linspace(0, 1, 5) - start[index]
+            else:
+                to = np.array([-1, 1]) * max(FAR * width, step)
+            places += [np.clip(start + along * change, 0, 1) for change in to]
+        return places
+
+    def _likelihood(self) -> Likelihood:
+        """The surrogate through all runs of the finest model, by how well each fits."""
+        known = [p for p in self._runs.points if p.stage == self._stage and p.predicted is not None]
+        u = np.array([self._u(point) for point in known])
+        if len(np.unique(u, axis=0)) <= len(self._coordinates):
+            raise Spent
+        y = np.array([point.predicted.value for point in known if point.predicted is not None])
+        plain = self._misfit(np.zeros(y.shape[1]))
+        chi2 = np.array([np.sum(plain.residuals(row) ** 2) for row in y])
+        scale = plain.total
+        weight = 1 / (
+            1 + (chi2 - chi2.min()) / (4 * critical(self._level) * _per_row(chi2.min(), len(plain)))
+        )
+        surrogate = Surrogate(u, y, weight, scale)
+        return Likelihood(surrogate, self._misfit(surrogate.error), self._coordinates)
+
+    def _found(self, near: np.ndarray, agrees: bool, spent: bool) -> Survey:
+        likelihood = self._likelihood()
+        best = likelihood.minimum(near)
+        chi2 = float(likelihood.chi2(best))
+        freedom = len(likelihood.misfit) - len(best)
+        widened = widening(
+            float(np.sum(likelihood.misfit.residuals(likelihood.surrogate(best)) ** 2)), freedom
+        )
+        crit = critical(self._level) * widened
+        intervals = [likelihood.interval(index, best, crit) for index in range(len(best))]
+        return Survey(likelihood, best, intervals, chi2, widened, agrees, spent)
+
+    def _agrees(self, found: Survey, point: Point) -> bool:
+        """Whether a run has the χ² that the surrogate has there."""
+        if point.predicted is None:
+            return True  # a guard stopped it; nothing more can be had there
+        u = self._u(point)
+        run = float(np.sum(found.likelihood.misfit.residuals(point.predicted.value) ** 2))
+        run += float(np.sum(self._coordinates.prior_residuals(u) ** 2))
+        return abs(run - float(found.likelihood.chi2(u))) <= AGREES * critical(self._level) * found.widened
+
+
+def _per_row(chi2: float, rows: int) -> float:
+    """χ² of a row, at least 1: where nothing fits, runs a little worse than the best are as good."""
+    return max(1.0, chi2 / rows)
