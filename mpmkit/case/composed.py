@@ -148,6 +148,7 @@ def case_model(registry: Registry) -> type[Case]:
         __doc__=Case.__doc__,
         bodies=(list[body], Field(min_length=1)),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
+        sinks=_by_name(registry, "sink", Case.model_fields["sinks"]),
         scheme=(scheme, Field(default={}, validate_default=True)),
         output=(output, Field(default={}, validate_default=True)),
     )
