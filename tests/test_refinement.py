@@ -13,6 +13,7 @@ from mpmkit.errors import CaseError, PluginStop
 from mpmkit.registry import Registered, Registry, installed
 from mpmkit.running.recorder import _by_number
 from mpmkit.solver.energies import compressive_energy, kinetic_energy, strain_energy
+from mpmkit.solver.ledger import ENERGY
 from mpmkit.solver.merging import WIDEST, merge
 from mpmkit.solver.simulation import Simulation
 
@@ -336,16 +337,16 @@ def test_what_merging_takes_is_booked():
     """The relative motion of merged particles is gone: nothing comes from nowhere, and nothing goes there."""
     simulation = scene()
     p = simulation.particles
-    simulation.guards.begin()
+    simulation.prepare()
     rng = np.random.default_rng(2)
     p.portion[:] = 0.5
     p.position[:, 0] = 0.3 + 0.5 * (p.position[:, 0] - 0.3)
     p.velocity[:] = rng.standard_normal(p.velocity.shape)
-    simulation.guards.balance.update(p, 0.0, 0.0, 0.0)
+    simulation.guards.balance.update(p, simulation.account()[:, ENERGY])
     created, held = simulation.guards.balance.created, kinetic_energy(p)
     simulation._refine()
     assert kinetic_energy(p) < 0.99 * held
-    simulation.guards.balance.update(p, 0.0, 0.0, 0.0)
+    simulation.guards.balance.update(p, simulation.account()[:, ENERGY])
     assert simulation.guards.balance.created == pytest.approx(created, abs=1e-9 * held)
 
 

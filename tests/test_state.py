@@ -36,7 +36,8 @@ MADE_OF_THE_CASE = {
     "Relaxation": {"_treatment"},
     "Stage": {"redistribution", "acts", "_follows", "_grid", "_radial", "_times", "_downwards"},
     "Refiner": {"dim", "acts", "_author", "_grid", "_radial", "_full"},
-    "EnergyBalance": {"_downwards", "_along"},
+    "Ledger": {"_gravity", "_downwards", "_along"},
+    "Drains": {"_sinks", "_domain", "_lower"},
     "Recorder": {"directory"},
     "Ending": {"_until"},
     "History": {"attributes", "_columns", "_axes", "_variables", "_walls"},
@@ -239,7 +240,7 @@ def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
 
 def test_every_component_is_stateful(tmp_path):
     simulation, recorder, watch = a_run(load_case(CASES / "slump_fast.json", FLOWING), tmp_path)
-    simulation.guards.begin()
+    simulation.prepare()
     owners = [simulation, simulation.operations, simulation.guards, recorder]
     components = [run_components(recorder, watch), *(owner.components for owner in owners)]
     assert all(isinstance(one, Stateful) for found in components for one in found.values())

@@ -111,6 +111,7 @@ def scripted(spread, speed, height=0.3, walls=()):
     scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: 0.02)
     scene.grid = SimpleNamespace(periodic=np.zeros(2, dtype=bool))
     scene.operations = SimpleNamespace(walls=SimpleNamespace(walls=list(walls)))
+    scene.drains = SimpleNamespace(emptied="")
     milestones = Milestones(scene)
     ending = Ending(scene, milestones)
     while scene.time < 20 and not ending.ended:

@@ -17,6 +17,7 @@ from ..registry.audit import require_number
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
 from .diagnostics import diagnostic_columns
+from .draining import drain_columns
 from .ending import Until
 from .measurement_rules import check_measurements
 from .model import Case, Material
@@ -56,6 +57,7 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    _check_sinks(case)
     _check_measured(case)
     _check_until(case)
     check_walls(case)
@@ -64,6 +66,17 @@ def check(case: Case) -> None:
         _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
     check_measurements(case)
+
+
+def _check_sinks(case: Case) -> None:
+    faces = {name: case.grid.faces.get(name, "open") for name in case.space_.faces}
+    for name, sink in case.sinks.items():
+        if not NAME.fullmatch(name):
+            raise ValueError(f"sinks has the name {shown(name)}; it must be of letters, digits, '_' and '-'")
+        with blaming_plugins([("sink", sink)]):
+            problem = sink.problem(case.space_, faces)
+        if problem is not None:
+            raise ValueError(f"sinks.{name}: {problem}")
 
 
 def _check_measured(case: Case) -> None:
@@ -88,8 +101,8 @@ def _check_measured(case: Case) -> None:
 
 
 def _check_until(case: Case) -> None:
-    scalars = [column.name for column in COLUMNS if not column.component]
-    scalars += [column.name for column in diagnostic_columns(case)]
+    columns = [*COLUMNS, *drain_columns(case), *diagnostic_columns(case)]
+    scalars = [column.name for column in columns if not column.component and not column.dimension]
     for name in case.until.variables if isinstance(case.until, Until) else ():
         if name not in scalars:
             near = nearest(name, ["at_most", "rest", *scalars])

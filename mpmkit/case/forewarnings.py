@@ -12,6 +12,7 @@ from itertools import combinations, islice
 
 import numpy as np
 
+from ..registry.blame import blaming_plugins
 from .model import Body, Case, Material
 from .plausibility import implausible
 from .walls import wall_between
@@ -92,6 +93,8 @@ def _falls_out(case: Case) -> Iterator[str]:
         distance = float(ends[1] - upper[axis]) if g[axis] > 0 else float(lower[axis] - ends[0])
         speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
         pull = abs(float(g[axis]))
+        if _is_a_sink(case, axis, upper=bool(g[axis] > 0)):
+            continue
         time = (math.hypot(speed, math.sqrt(2 * pull * max(0.0, distance))) - speed) / pull
         if time <= case.end:
             when = "at once" if time < 1e-6 * case.end else f"after about {time:.2g} s"
@@ -99,6 +102,15 @@ def _falls_out(case: Case) -> Iterator[str]:
                 f"bodies.{number} has no floor: gravity pulls it to the face {side}, which is open, and it "
                 f'leaves the grid there {when}; for a floor write "{side}": "stick", or "slip", in grid.faces'
             )
+
+
+def _is_a_sink(case: Case, axis: int, upper: bool) -> bool:
+    """Whether a sink takes what is beyond the middle of a face."""
+    lower_end, upper_end = case.domain_bounds
+    beyond = (lower_end + upper_end) / 2
+    beyond[axis] = upper_end[axis] + case.grid.cell_size if upper else lower_end[axis] - case.grid.cell_size
+    with blaming_plugins([("sink", sink) for sink in case.sinks.values()]):
+        return any(np.any(sink.takes(beyond[None], 0.0, case.domain_bounds)) for sink in case.sinks.values())
 
 
 def _hangs(case: Case) -> Iterator[str]:

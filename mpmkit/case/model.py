@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
-from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Surface, quantity
+from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Sink, Surface, quantity
 from ..contracts.order import UpdateOrder
 from ..contracts.redistribution import Redistribution
 from ..contracts.refinement import Refinement
@@ -209,6 +209,12 @@ class Case(Model):
     walls: dict[str, Wall] = Field(
         default={},
         description="walls beside the faces of the grid, each with a name of letters, digits, '_' and '-'",
+        json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
+    )
+    sinks: dict[str, Sink] = Field(
+        default={},
+        description="where material leaves the scene and is counted, each by a name of letters, digits, "
+        "'_' and '-'",
         json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
     )
     scheme: Scheme = Field(description="the numerical method")

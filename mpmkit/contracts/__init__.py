@@ -15,6 +15,7 @@ from .order import UpdateOrder
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
+from .sink import Sink
 from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -47,6 +48,7 @@ __all__ = [
     "Refinement",
     "Refining",
     "ShapeFunction",
+    "Sink",
     "Space",
     "StateVariable",
     "Surface",

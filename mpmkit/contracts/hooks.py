@@ -19,6 +19,7 @@ from .order import UpdateOrder
 from .redistribution import Redistribution
 from .refinement import Refinement
 from .shape import ShapeFunction
+from .sink import Sink
 from .surface import Surface
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -88,6 +89,11 @@ def mpmkit_particle_fields() -> Iterable[type[ParticleField]]:  # type: ignore[e
     """Particle fields of this module."""
 
 
+@hookspec
+def mpmkit_sinks() -> Iterable[type[Sink]]:  # type: ignore[empty-body]
+    """Sinks of this module."""
+
+
 KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
@@ -99,6 +105,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
+    "sink": ("mpmkit_sinks", Sink),
     "diagnostic": ("mpmkit_diagnostics", Diagnostic),
     "particle_field": ("mpmkit_particle_fields", ParticleField),
 }

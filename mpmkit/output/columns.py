@@ -26,6 +26,19 @@ COLUMNS = (
 """Those of every history; docs/cases.md defines each. The long names label plots."""
 
 
+def ledger_columns(causes: tuple[str, ...]) -> tuple[Variable, ...]:
+    """The columns of the ledger: over the causes, each adds up to what there is."""
+    return (
+        Variable("ledger_mass", "kg", "mass by cause", dimension="cause", labels=causes),
+        Variable(
+            "ledger_momentum", "N s", "momentum by cause", component=True, dimension="cause", labels=causes
+        ),
+        Variable(
+            "ledger_energy", "J", "energy of motion and stored, by cause", dimension="cause", labels=causes
+        ),
+    )
+
+
 def wall_columns(axes: tuple[str, ...]) -> tuple[Variable, ...]:
     """The columns of the walls; a torque is about the axes of 3-D, or about the one out of the plane."""
     about = axes if len(axes) == 3 else ("t" if axes[0] == "r" else "y",)

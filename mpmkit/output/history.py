@@ -111,6 +111,7 @@ class History:
         variables: dict[str, tuple] = {}
         for name, column in self._columns.items():
             sizes = {"wall": len(self._walls)} if column.of_walls else {}
+            sizes |= {column.dimension: len(column.labels)} if column.dimension else {}
             sizes |= {"component": len(self._axes)} if column.component else {}
             sizes |= {"about": len(column.about)} if column.about else {}
             trailing, shape = tuple(sizes), (len(self), *sizes.values())
@@ -145,6 +146,10 @@ class History:
                 "particle", range(dataset.sizes.get("particle", 0)), "number of the particle"
             ),
         }
+        for column in self._columns.values():
+            if column.dimension:
+                words = f"name of the {column.dimension}"
+                labels[column.dimension] = coordinate(column.dimension, column.labels, words)
         return {name: label for name, label in labels.items() if name in dataset.dims}
 
     def write(self, path: Path) -> None:

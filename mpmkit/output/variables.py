@@ -10,7 +10,8 @@ from dataclasses import dataclass
 class Variable:
     """A column of the history: a number, or with ``component`` a vector along the axes of the space.
 
-    One ``of_walls`` has such an entry for each wall; one ``about`` axes has a component for each of them.
+    One ``of_walls`` has such an entry for each wall; one ``about`` axes has a component for each of them; one
+    with a ``dimension`` of its own has an entry for each of its ``labels``.
     """
 
     name: str
@@ -19,6 +20,8 @@ class Variable:
     component: bool = False
     of_walls: bool = False
     about: tuple[str, ...] = ()
+    dimension: str = ""
+    labels: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -121,6 +121,7 @@ def coarser(case: Case) -> Case:
     data["grid"]["cell_size"] = cell_size
     data["grid"]["domain"] = {axis: _whole(ends, cell_size) for axis, ends in data["grid"]["domain"].items()}
     data["output"] = {"report": False}
+    data["until"] = case.end  # a condition may be on what the output has measured
     return parse_case(data, source="its pilot")
 
 

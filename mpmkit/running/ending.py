@@ -47,13 +47,15 @@ class Ending:
     def restore(self, state: State) -> None:
         """Go on from them; a run that is to last longer has not ended."""
         restore_plain(self, state)
-        if self._until is None:
+        if self._until is None and not self._simulation.drains.emptied:
             self.ended = self.why = ""
 
     def watch(self) -> None:
         """Look at the present step, where it is due."""
         simulation = self._simulation
-        if self._until is None or simulation.steps % LOOKS or not simulation.steps:
+        if simulation.drains.emptied:
+            self.ended, self.why = CONDITION, simulation.drains.emptied
+        if self._until is None or self.ended or simulation.steps % LOOKS or not simulation.steps:
             return
         if self._until.rest and self._at_rest():
             self.ended = AT_REST
@@ -77,7 +79,7 @@ class Ending:
         """Spread diameter, height, and the centre of mass along the axes that are not periodic, m."""
         simulation = self._simulation
         p, measures, grid = simulation.particles, simulation.measures, simulation.grid
-        centre = p.mass @ p.position / p.mass.sum()
+        centre = (p.mass[:, None] * p.position).sum(axis=0) / p.mass.sum()
         along = grid.periodic.copy()
         along[0] |= simulation.case.space_.radial  # the centre is on the axis
         lengths = np.array([measures.spread(p), measures.height(p), *centre[~along]])

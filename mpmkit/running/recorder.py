@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from ..case.diagnostics import diagnostic_columns
+from ..case.draining import drain_columns
 from ..case.model import Case
 from ..case.output import FRAMES, ROWS
 from ..case.state_variables import particle_variables
 from ..output import FrameWriter, History, RunDirectory, Variable
-from ..output.columns import COLUMNS, wall_columns
+from ..output.columns import COLUMNS, ledger_columns, wall_columns
 from ..output.flow import arrays_of, write_flow
+from ..solver.ledger import CAUSES, ENERGY, MASS
 from ..solver.particle_fields import frame_fields, history_fields
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
@@ -57,12 +59,15 @@ class Recorder:
         axes, walls = case.space_.axes, simulation.wall_names
         columns = (
             *COLUMNS,
+            *drain_columns(case),
             *diagnostic_columns(case),
             *measurement_columns(case),
+            *ledger_columns(CAUSES),
             *(wall_columns(axes) if walls else ()),
         )
         self.history = History(columns, attributes, axes, variables, walls)
-        self._wall_sums, self._walls_since = simulation.wall_sums(), simulation.time
+        self._wall_sums, self._sunk = simulation.wall_sums(), simulation.ledger.mass_out.copy()
+        self._since = simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
         self.wall_frames = None if directory is None else WallFrames(case, directory.frames, goes_on)
         self.flow = FlowRecord(simulation) if directory is not None and settings.report else None
@@ -138,9 +143,17 @@ class Recorder:
 
     def _add_row(self) -> None:
         simulation, particles = self.simulation, self.simulation.particles
-        values = simulation.measured()
+        account = simulation.account()
+        values = simulation.measured() | {
+            "ledger_mass": account[:, MASS],
+            "ledger_momentum": account[:, 1:-1],
+            "ledger_energy": account[:, ENERGY],
+        }
+        passed, self._since = simulation.time - self._since, simulation.time
+        if simulation.case.sinks:
+            values |= self._sink_means(passed)
         if simulation.wall_names:
-            values |= self._wall_means()
+            values |= self._wall_means(passed)
         values |= measurements(simulation, values)
         with simulation.blaming:
             kept = history_fields(simulation)
@@ -150,12 +163,18 @@ class Recorder:
         if self.directory is not None and self.history.flush_if_due(self.directory.history):
             self._write_flow()
 
-    def _wall_means(self) -> dict[str, np.ndarray]:
-        """Force, torque and power of each wall, means over the time since the last row."""
-        sums, time = self.simulation.wall_sums(), self.simulation.time
-        passed = time - self._walls_since
+    def _sink_means(self, passed: float) -> dict[str, np.ndarray]:
+        """What each sink has taken, and takes, mean over the time since the last row, s."""
+        mass = self.simulation.ledger.mass_out.copy()
+        rate = (mass - self._sunk) / passed if passed > 0 else np.zeros_like(mass)
+        self._sunk = mass
+        return {"sink_mass": mass, "sink_rate": rate}
+
+    def _wall_means(self, passed: float) -> dict[str, np.ndarray]:
+        """Force, torque and power of each wall, means over the time since the last row, s."""
+        sums = self.simulation.wall_sums()
         mean = (sums - self._wall_sums) / passed if passed > 0 else np.zeros_like(sums)
-        self._wall_sums, self._walls_since = sums, time
+        self._wall_sums = sums
         dim = self.simulation.grid.dim
         return {"wall_force": mean[:, :dim], "wall_torque": mean[:, dim:-1], "wall_power": mean[:, -1]}
 

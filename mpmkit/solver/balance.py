@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from ..kernels.sums import kinetics
-from .energies import compressive_energy, kinetic_energy, potential_energy, strain_energy, weighted
 from .grid import Grid
+from .ledger import GRAVITY, IN, OUT, REDISTRIBUTION, REFINEMENT, START, WALLS
 from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
@@ -31,19 +31,17 @@ ROUNDING = 1e-9
 
 
 class EnergyBalance:
-    """Keeps account of the energy of a scene.
+    """Compares the energy of a scene with the ledger.
 
-    Materials dissipate, so that what moves and is stored can be no more than what did at the start and what
-    gravity and walls that move have done since,
+    Materials dissipate, so that what moves and is stored can be no more than what the ledger accounts for,
 
-        created = (K + U) - (K + U)(0) - W <= 0,
+        created = (K + U) - start - in - out - W <= 0,
 
-    with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity: what the
-    particles have come down by, and, along a periodic axis, which has no height, the integral of its power;
-    and that of the walls, the sum of λ·w over all impulses λ that they gave, at their velocity w.
-    What a redistribution has put in, R (see ``redistribution.Stage``), is a part of what was created, and is
-    not excused: one that feeds more than the material dissipates is stopped like any other fault. It is kept
-    apart to name the cause, and ``created - redistributed`` is what the rest of the scheme has created.
+    with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity and of
+    walls that move, and what refinement has changed, see ``ledger.Ledger``.
+    What a redistribution has put in, R, is a part of what was created, and is not excused: one that feeds
+    more than the material dissipates is stopped like any other fault. It is kept apart to name the cause,
+    and ``created - redistributed`` is what the rest of the scheme has created.
     Splitting leaves part of the affine velocity to the halves: that is taken as put in. A sound speed that
     follows the flow changes at the same U, see ``solver.sound``, and is forgiven nothing.
 
@@ -53,14 +51,9 @@ class EnergyBalance:
         most_excess: largest energy created so far, over the supply.
     """
 
-    def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray, time: float) -> None:
-        self._downwards = np.where(grid.periodic, 0.0, gravity)
-        self._along = np.where(grid.periodic, gravity, 0.0)
-        self._first = self.held = _held(particles)
-        self._height = potential_energy(particles, self._downwards)
-        self._time, self._power = time, self._power_along(particles)
-        self._put_in = self._most_work = 0.0
-        self.created = self.redistributed = 0.0
+    def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray) -> None:
+        self._first = self._most_work = 0.0
+        self.held = self.created = self.redistributed = 0.0
         self.solid = not any(group.law.uses_equation_of_state for group in particles.groups)
         self.most_excess = 0.0
         self._hard = False
@@ -79,27 +72,18 @@ class EnergyBalance:
         """Take its numbers back."""
         restore_plain(self, state)
 
-    def update(self, p: Particles, time: float, redistributed: float, walls: float) -> None:
-        """Take the energies of the present state, and what the redistribution and walls have put in, J."""
-        self.held = _held(p)
-        power = self._power_along(p)
-        self._put_in += (time - self._time) * (power + self._power) / 2
-        self._time, self._power = time, power
-        work = self._height - potential_energy(p, self._downwards) + self._put_in + walls
+    def update(self, p: Particles, energy: np.ndarray) -> None:
+        """Take the energies by cause, J, of the present state."""
+        self._first, self.redistributed = float(energy[START]), float(energy[REDISTRIBUTION])
+        self.held = float(energy.sum())
+        work = float(energy[[IN, GRAVITY, WALLS, REFINEMENT]].sum())
         self._most_work = max(self._most_work, abs(work))
-        self.redistributed = redistributed
-        self.created = self.held - self._first - work
+        self.created = self.held - self._first - work - float(energy[OUT])
         self.most_excess = max(self.most_excess, self.excess)
         if self.solid and not self._hard:
             self._hard = math.sqrt(kinetics(p.mass, p.velocity)[2]) > HARD * self._wave_speed
         tolerated = CREATED_BY_IMPACT if self._hard else CREATED
         self._looks_too_high = self._looks_too_high + 1 if self.excess > tolerated else 0
-
-    def accept(self, p: Particles) -> None:
-        """Take what has become of the energy since ``update`` as put in from outside."""
-        held = _held(p)
-        self._put_in += held - self.held
-        self.held = held
 
     @property
     def supply(self) -> float:
@@ -115,10 +99,3 @@ class EnergyBalance:
     def broken(self) -> bool:
         """Whether far too much energy was created, or too much for too long."""
         return self._looks_too_high >= LOOKS or not self.excess <= MOST_CREATED
-
-    def _power_along(self, p: Particles) -> float:
-        return weighted(p, p.velocity, self._along)
-
-
-def _held(p: Particles) -> float:
-    return kinetic_energy(p) + strain_energy(p) + compressive_energy(p)

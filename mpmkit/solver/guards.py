@@ -17,6 +17,7 @@ from ..registry.blame import blaming_plugins
 from .balance import EnergyBalance
 from .density import Density
 from .density_watch import DensityWatch, cure
+from .ledger import ENERGY
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .time_step import warnings
 from .view import SceneView
@@ -39,7 +40,7 @@ class Guards:
 
     def __init__(self, scene: SceneView) -> None:
         self._scene = scene
-        self._mass: float | None = None
+        self._begun = False
         self._longest_step = 0.0
         self.watches_energy = all(group.law.passive for group in scene.particles.groups)
         self.balance: EnergyBalance | None = None
@@ -63,15 +64,16 @@ class Guards:
         restore_plain(self, state)
 
     def begin(self) -> None:
-        """Take mass and energy of the state in which the scene begins."""
-        if self._mass is None:
-            self._mass = float(np.sum(self._scene.particles.mass))
-            if self.watches_energy:
-                self.balance = self._new_balance()
+        """Begin to watch the energy of the state in which the scene begins, once."""
+        if self._begun:
+            return
+        self._begun = True
+        if self.watches_energy:
+            self.balance = self._new_balance()
 
     def _new_balance(self) -> EnergyBalance:
         s = self._scene
-        return EnergyBalance(s.particles, s.grid, s.case.gravity_vector, s.time)
+        return EnergyBalance(s.particles, s.grid, s.case.gravity_vector)
 
     def check(self) -> None:
         """Raise GuardStop where the run is beyond saving.
@@ -82,7 +84,6 @@ class Guards:
         Raises:
             PluginFault: mass got lost because a shape function's weights do not sum to one.
         """
-        self.begin()
         p = self._scene.particles
         firsts = np.empty(len(p) // CHUNK + 1, dtype=np.int64)
         state = p.position, p.velocity, p.stress, p.pressure, p.volume_ratio
@@ -91,19 +92,12 @@ class Guards:
             stop(self._scene, int(unsound))
         self._check_mass()
         if self.balance is not None:
-            self.balance.update(
-                p, self._scene.time, self._scene.redistribution_energy, self._scene.walls_work
-            )
+            self.balance.update(p, self._scene.account()[:, ENERGY])
             if self.watches_energy and self.balance.broken:
                 self._stop_of_energy(self.balance)
         uneven = self.density.look(self._scene)
         if uneven is not None and self.watches_density:
             self._stop_of_density(uneven)
-
-    def accept_changes(self) -> None:
-        """To be called where splitting has changed energies."""
-        if self.balance is not None:
-            self.balance.accept(self._scene.particles)
 
     def check_step(self) -> None:
         """Raise GuardStop if the chosen step is not a positive number, or far shorter than it once was."""
@@ -122,16 +116,15 @@ class Guards:
 
     def _check_mass(self) -> None:
         s, p = self._scene, self._scene.particles
-        mass = float(np.sum(p.mass))
-        assert self._mass is not None
-        if not abs(mass - self._mass) <= DRIFT * self._mass:
+        mass, expected = float(np.sum(p.mass)), s.ledger.mass
+        if not abs(mass - expected) <= DRIFT * expected:
             off, found = np.zeros(len(p)), f"and the particles have a mass of {mass:.9g} kg"
             for group in p.groups:
                 off[group.part] = np.abs(
                     p.mass[group.part] / (group.density * p.initial_volume[group.part]) - 1
                 )
             worst = int(np.argmax(off))
-            what = f"has {p.mass[worst]:.4g} kg, {found}, but at the start they had {self._mass:.9g} kg"
+            what = f"has {p.mass[worst]:.4g} kg, {found}, but they should have {expected:.9g} kg"
             raise _stopped(
                 s,
                 "mass-drift",

@@ -83,6 +83,16 @@ class SceneOperations:
         self._stepped = False
         self._no_rows = np.zeros((0, dim))
 
+    def renew(self, time: float) -> None:
+        """Allocate, sort, and lay the walls at a time, s, where there are other particles than before.
+
+        So what is left is whole: a checkpoint of it holds what the contacts of walls remember. A particle
+        that is lost is left for ``begin`` to find.
+        """
+        self.allocate()
+        if self._sort() is None:
+            self.walls.move_to(time)
+
     # --- State
 
     @property

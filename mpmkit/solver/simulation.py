@@ -12,8 +12,10 @@ from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.blame import blaming_plugins
 from .diagnosed import diagnosed
+from .draining import Drains
 from .grid import Grid
 from .guards import Guards, stop
+from .ledger import REDISTRIBUTION, WALLS, Ledger, present
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
@@ -82,13 +84,21 @@ class Simulation:
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
         fluid = all(group.law.uses_equation_of_state for group in self.particles.groups)
         self._interval = CONTROL_INTERVAL if fluid else IMPACT_INTERVAL
+        self.ledger = Ledger(self.grid, case.gravity_vector, len(case.sinks))
+        self.drains = Drains(case, self.grid, self.particles, self.ledger)
         self.guards = Guards(self)
         self.choose_time_step()
 
     @property
     def components(self) -> dict[str, Stateful]:
         """What has a state of its own, in the order in which it is restored."""
-        return {"particles": self.particles, "operations": self.operations, "guards": self.guards}
+        return {
+            "particles": self.particles,
+            "operations": self.operations,
+            "ledger": self.ledger,
+            "drains": self.drains,
+            "guards": self.guards,
+        }
 
     def state(self) -> State:
         """All that the run depends on, except the case: a run continues from it with the same bits."""
@@ -157,7 +167,7 @@ class Simulation:
         Raises:
             GuardStop: the run is beyond saving, see ``guards``.
         """
-        self.guards.begin()
+        self._begin()
         if self.steps % self._interval == 0 and self.steps > self._prepared:
             self._prepared = self.steps
             self.check()
@@ -189,7 +199,21 @@ class Simulation:
         self.time += dt
         self.steps += 1
         self.particle_steps += len(self.particles)
+        if self.drains.take_out(self.time):
+            self._renew()
         return dt
+
+    def _renew(self) -> None:
+        """Go on with other particles than before."""
+        try:
+            self.operations.renew(self.time)
+        except Scattered as error:
+            stop(self, error.particle, scattered=True)
+
+    def _begin(self) -> None:
+        """Take what there is at the start, once."""
+        self.ledger.begin(self.particles, self.time)
+        self.guards.begin()
 
     def _follow_flow(self) -> None:
         """Recompute the sound speeds that are to follow the flow."""
@@ -198,14 +222,19 @@ class Simulation:
 
     def _refine(self) -> None:
         """Let the refinement split and merge particles."""
+        if not self.refiner.acts:
+            return
+        p = self.particles
+        before, height = present(p), self.ledger.height(p)
         try:
             with self.blaming:
                 changed = self.refiner.refine()
         except OutOfMemory as error:
             stop(self, error.particle, drawn_out=True)
         if changed:
-            self.operations.allocate()
-            self.guards.accept_changes()
+            with self.blaming:
+                self._renew()
+            self.ledger.refined(before, height, p)
 
     def measured(self) -> dict[str, float | np.ndarray]:
         """What the history records of every scene, by the names of its variables, at the present step."""
@@ -214,8 +243,26 @@ class Simulation:
             "time_step": self.time_step,
             "mach_number": self.mach_number,
         }
+        if self.case.sinks:
+            found["mass_out"] = float(self.ledger.mass_out.sum())
         with self.blaming:
             return found | diagnosed(self)
+
+    def account(self) -> np.ndarray:
+        """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
+        dim, stage = self.grid.dim, self.operations.stage
+        by_cause = {
+            WALLS: (self._impulse_of_walls(dim), self.walls_work),
+            REDISTRIBUTION: (stage.momentum, stage.energy),
+        }
+        return self.ledger.account(self.particles, self.time, by_cause)
+
+    def _impulse_of_walls(self, dim: int) -> np.ndarray:
+        """N s that all walls, faces and planes of symmetry have given so far, ``(dim,)``."""
+        impulse = self.operations.faces.sums[:, :dim].sum(axis=0)
+        if len(self.operations.walls):
+            impulse += self.operations.walls.sums()[:, :dim].sum(axis=0)
+        return impulse
 
     @property
     def mapped_mass(self) -> float | None:
@@ -253,4 +300,6 @@ class Simulation:
     def check(self) -> None:
         """Raise GuardStop if the run is beyond saving, see ``guards``."""
         with self.blaming:
+            self._begin()
+            self.ledger.look(self.particles, self.time)
             self.guards.check()

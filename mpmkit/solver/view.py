@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case.model import Case
 from .grid import Grid
+from .ledger import Ledger
 from .particles import Particles
 from .time_step import Limits
 
@@ -48,12 +49,10 @@ class SceneView(Protocol):
         """Mass that the nodes got in the last step, kg; None where there was no step yet."""
 
     @property
-    def redistribution_energy(self) -> float:
-        """Energy that redistributions have put in so far, J; see ``redistribution.Stage``."""
+    def ledger(self) -> Ledger: ...
 
-    @property
-    def walls_work(self) -> float:
-        """Energy that walls that move have given to the material so far, J."""
+    def account(self) -> np.ndarray:
+        """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
 
     def require_tables(self) -> None:
         """Raise PluginFault if the weights of the last step cannot be right."""

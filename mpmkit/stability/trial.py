@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.model import Case
-from ..errors import GuardStop, PluginStop
+from ..errors import CaseError, GuardStop, PluginStop
 from ..solver.grid import Grid
 from ..solver.simulation import Simulation
 
@@ -35,6 +35,8 @@ class Trace:
 
 def trace(case: Case, fraction: float) -> Trace:
     """Run a case with ``fraction`` of the smallest limit that it does not ignore, whatever schemes bear."""
+    if case.sinks:
+        raise CaseError("stability follows every particle to the end: leave out sinks")
     simulation = Simulation(case, fraction=fraction)
     simulation.guards.watches_energy = False  # the judge looks at it, and more closely
     simulation.guards.watches_density = False  # which no shorter step keeps

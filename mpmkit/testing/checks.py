@@ -18,6 +18,7 @@ from ..contracts import (
     Redistribution,
     Refinement,
     ShapeFunction,
+    Sink,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -36,6 +37,7 @@ from . import (
     redistribution,
     refinement,
     shapes,
+    sinks,
     surfaces,
     volumetric,
 )
@@ -120,6 +122,7 @@ ON_CONTACTS = (
     contacts.galilei,
     contacts.batch_order,
 )
+ON_SINKS = (sinks.takes_something, sinks.batch_order)
 ON_DIAGNOSTICS = (
     measured.declares,
     measured.numbers,
@@ -229,6 +232,23 @@ def surface_checks(surface: Surface, *, size: float = 1.0) -> list[Check]:
 def contact_checks(contact: Contact) -> list[Check]:
     """What every contact must do."""
     return _of("contact", contact, [(check.__name__, partial(check, contact)) for check in ON_CONTACTS])
+
+
+def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
+    """What every sink must do, in each space that can have it; see ``sink_tests``."""
+    homes = sinks.at_home(sink)
+    return _of(
+        "sink",
+        sink,
+        [
+            ("home", partial(sinks.home, sink)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, sink, space, size))
+                for check in ON_SINKS
+                for space in homes
+            ),
+        ],
+    )
 
 
 def diagnostic_checks(diagnostic: Diagnostic) -> list[Check]:

@@ -13,6 +13,7 @@ from ..contracts import (
     Redistribution,
     Refinement,
     ShapeFunction,
+    Sink,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -29,6 +30,7 @@ from .checks import (
     redistribution_checks,
     refinement_checks,
     shape_checks,
+    sink_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -152,6 +154,18 @@ def contact_tests(contact: Contact) -> Test:
     makes no difference.
     """
     return _tests(contact_checks(contact))
+
+
+def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a sink, in each space that can have it.
+
+    True or False for each place, and each for itself.
+
+    Args:
+        sink: with parameters.
+        size: m; the grid reaches so far from the origin along each axis, and places half as far again.
+    """
+    return _tests(sink_checks(sink, size=size))
 
 
 def diagnostic_tests(diagnostic: Diagnostic) -> Test:

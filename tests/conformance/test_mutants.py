@@ -13,6 +13,7 @@ import pytest
 import redistribution_mutants
 import refinement_mutants
 import shape_mutants
+import sink_mutants
 import surface_mutants
 import velocity_mutants
 import volumetric_mutants
@@ -31,6 +32,7 @@ from mpmkit.testing import (
     redistribution_checks,
     refinement_checks,
     shape_checks,
+    sink_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -189,11 +191,12 @@ CHECKS = {
     "equation_of_state": equation_of_state_checks,
     "surface": surface_checks,
     "contact": contact_checks,
+    "sink": sink_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "diagnostic")
-"""Kinds that go through the kit in ``test_surfaces_and_contacts.py`` and ``test_diagnostics.py``."""
+NEED_PARAMETERS = ("surface", "contact", "sink", "diagnostic")
+"""Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
     ("velocity", velocity_mutants.Still, "uniform motion plane-strain"),
@@ -271,6 +274,14 @@ OTHER_MUTANTS = [
     ("contact", contact_mutants.HiddenMemory, "batch order"),
     ("contact", contact_mutants.NoParity, "declares"),
     ("contact", contact_mutants.Rows, "descriptor"),
+    ("sink", sink_mutants.Nowhere, "home"),
+    ("sink", sink_mutants.SaysNothing, "home"),
+    ("sink", sink_mutants.Rows, "takes something plane-strain"),
+    ("sink", sink_mutants.Perhaps, "takes something 3d"),
+    ("sink", sink_mutants.Nothing, "takes something plane-strain"),
+    ("sink", sink_mutants.Everything, "takes something axisymmetric"),
+    ("sink", sink_mutants.Lowest, "batch order plane-strain"),
+    ("sink", sink_mutants.Pulls, "batch order plane-strain"),
     ("diagnostic", diagnostic_mutants.Nowhere, "home"),
     ("diagnostic", diagnostic_mutants.SaysNothing, "home"),
     ("diagnostic", diagnostic_mutants.NoUnit, "declares plane-strain"),
@@ -304,6 +315,7 @@ OTHER_MUTANTS = [
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
+        ("sink", sink_mutants.Below),
         ("diagnostic", diagnostic_mutants.Fastest),
         ("particle_field", particle_field_mutants.Momentum),
     ],

@@ -47,6 +47,8 @@ class Stage:
         energy: J, that all redistributions so far have put in, or taken where it is negative: the sum of the
             changes, over each, of kinetic, strain, compressive and potential energy. Potential energy is that
             of the history: along a periodic axis there is none.
+        momentum: N s, ``(dim,)``, that they have put in. A shift keeps it but for rounding, and at walls that
+            move.
     """
 
     nodes: contract.Lattice
@@ -64,6 +66,7 @@ class Stage:
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
         self.shear = self.time = self.energy = 0.0
+        self.momentum = np.zeros(grid.dim)
         self._blocks: dict[tuple, Mirrored] = {}
         self._downwards = np.where(grid.periodic, 0.0, gravity)
         self._follows = scheme.shape.particle_domain != "fixed"
@@ -72,10 +75,11 @@ class Stage:
         self._times = max(1, round(grid.cell_size / self._typical_spacing()))
 
     def state(self) -> State:
-        return {name: np.array(getattr(self, name)) for name in ("shear", "time", "energy")}
+        return {name: np.array(getattr(self, name)) for name in ("shear", "time", "energy", "momentum")}
 
     def restore(self, state: State) -> None:
         self.shear, self.time, self.energy = (float(state[name]) for name in ("shear", "time", "energy"))
+        self.momentum = state["momentum"].copy()
         self._blocks = {}
 
     def _typical_spacing(self) -> float:
@@ -120,9 +124,10 @@ class Stage:
         self._window, self._tasks = window, sorting.tasks
         self._splines = self.nodes = self._lattice(1, position, size)
         self.places = self._lattice(self._times, position, size)
-        before = self._energy_of_particles()
+        before, momentum = self._energy_of_particles(), self._momentum_of_particles()
         author.redistribute(self, self.time)
         self.energy += self._energy_of_particles() - before
+        self.momentum += self._momentum_of_particles() - momentum
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.time = 0.0
         return True
@@ -131,6 +136,9 @@ class Stage:
         p = self._particles
         stored = strain_energy(p) + compressive_energy(p)
         return kinetic_energy(p) + stored + potential_energy(p, self._downwards)
+
+    def _momentum_of_particles(self) -> np.ndarray:
+        return (self._particles.mass[:, None] * self._particles.velocity).sum(axis=0)
 
     def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
         return SplineLattice(self._block(times, centred=False), self._tasks, position, size)

@@ -40,7 +40,10 @@ class Flux(Diagnostic):
         x, size = scene.position[:, axis], scene.half_size[:, axis]
         low, high = np.maximum(x - size, self.at - half), np.minimum(x + size, self.at + half)
         rate = np.maximum(high - low, 0) / (2 * size) * scene.velocity[:, axis] / scene.cell_size
-        return {"mass_flux": float(scene.mass @ rate), "volume_flux": float(scene.volume @ rate)}
+        return {
+            "mass_flux": float(np.sum(scene.mass * rate)),
+            "volume_flux": float(np.sum(scene.volume * rate)),
+        }
 
 
 @hookimpl
