@@ -78,7 +78,9 @@ def test_the_coarser_model_only_leads_the_way(tmp_path):
     for path, truth in ((YIELD_STRESS, 150), (VISCOSITY, 40)):
         assert result.parameters[path].low < truth < result.parameters[path].high
     exact = mpmkit.fit(a_fit([curve(tmp_path / "d.csv", 150, 40, noise=0.01)]), executor=Pretend())
-    width = [f.high / f.low for f in (result.parameters[YIELD_STRESS], exact.parameters[YIELD_STRESS])]
+    width = [
+        np.log(r.parameters[YIELD_STRESS].high / r.parameters[YIELD_STRESS].low) for r in (result, exact)
+    ]
     assert width[0] > 2 * width[1]
 
 
@@ -94,29 +96,30 @@ def test_runs_are_kept_and_reused(tmp_path):
 
 def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(tmp_path):
     measured = [curve(tmp_path / "d.csv", 150, 40)]
-    cut = mpmkit.fit(a_fit(measured, budget={"runs": 8}), tmp_path / "out", executor=Pretend())
+    first = Pretend()
+    cut = mpmkit.fit(a_fit(measured, budget={"runs": 8}), tmp_path / "out", executor=first)
+    assert 0 < len(first.ran) <= 8
     assert any("budget was spent" in sentence for sentence in cut.sentences)
     rest, whole = Pretend(), Pretend()
     resumed = mpmkit.fit(a_fit(measured), tmp_path / "out", executor=rest, overwrite=True)
     straight = mpmkit.fit(a_fit(measured), executor=whole)
     assert resumed.parameters == straight.parameters
-    assert len(rest.ran) == len(whole.ran) - 8
+    made = [json.dumps(data) for data in first.ran]
+    assert sum(json.dumps(data) in made for data in whole.ran) >= 6
+    assert not any(json.dumps(data) in made for data in rest.ran)
 
 
 def test_what_a_fit_leaves_behind(tmp_path):
     mpmkit.fit(a_fit([curve(tmp_path / "d.csv", 150, 40), FINAL]), tmp_path / "out", executor=Pretend())
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {
-        "asked.json", "fit.json", "runs.nc", "fit.html", "fitted.png", "misfit.png", "flow_curve.png", "
-        ""members"
-        ""members"members",
-    }  # fmt: skip
+    made = {"asked.json", "fit.json", "runs.nc", "fit.html", "members"}
+    assert names == made | {"fitted.png", "misfit.png", "flow_curve.png"}
     written = json.loads((tmp_path / "out/fit.json").read_text(encoding="utf-8"))
     entry = written["parameters"][YIELD_STRESS]
     assert {"value", "low", "high", "level", "identifiable"} <= entry.keys()
     with xarray.open_dataset(tmp_path / "out/runs.nc") as runs:
         assert runs.sizes["run"] == written["runs"]
-        best = runs.isel(run=int(runs.chi2.argmin()))
+        best = runs.isel(run=int(np.argmin(runs.chi2.values)))
         assert float(best[YIELD_STRESS]) == pytest.approx(150, rel=0.01)
         assert float(best.spread_diameter.isel(time=0)) == pytest.approx(0.2)
     page = (tmp_path / "out/fit.html").read_text(encoding="utf-8")
@@ -154,7 +157,8 @@ def test_of_two_laws_that_say_the_same_the_simpler_one_is_taken(tmp_path):
 
 
 def test_a_run_that_a_guard_stops_turns_the_search_back(tmp_path):
-    fit = a_fit([curve(tmp_path / "d.csv", 150, 40)], PARAMETERS | {YIELD_STRESS: {"low": 20, "high": 1000, "start": 60}})
+    start = PARAMETERS | {YIELD_STRESS: PARAMETERS[YIELD_STRESS] | {"start": 60}}
+    fit = a_fit([curve(tmp_path / "d.csv", 150, 40)], start)
     result = mpmkit.fit(fit, executor=Pretend(stopped=lambda material: material["yield_stress"] > 400))
     assert result.parameters[YIELD_STRESS].value == pytest.approx(150, rel=5e-3)
 

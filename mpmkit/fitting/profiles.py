@@ -56,7 +56,8 @@ class Likelihood:
     def __init__(self, surrogate: Surrogate, misfit: Misfit, coordinates: Coordinates) -> None:
         self.surrogate, self.misfit, self.coordinates = surrogate, misfit, coordinates
         rows = np.vstack([surrogate.coefficients, -misfit.value[None]])
-        self._short = np.linalg.qr(misfit.whitened(rows.T), mode="r").T
+        _, triangle = np.linalg.qr(misfit.whitened(rows.T))
+        self._short = triangle.T
 
     def residuals(self, u: np.ndarray) -> np.ndarray:
         """Numbers whose squares add up to χ², ``(…, q)``, at points ``(…, n)``: priors come last."""
