@@ -38,13 +38,11 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     low, high = (solution.coordinates.value(index, u) for u in (interval.low, interval.high))
     flat = _flat(solution, index, interval)
     from_prior = not (interval.low_open or interval.high_open)
+    if flat:
+        depends = "do not depend" if len(flat) > 1 else "does not depend"
+        prior = " What is said of it comes from its prior alone." if from_prior else ""
+        return f"The {' and the '.join(flat)} {depends} on the {name} {names.said(path, low, high)}.{prior}"
     if from_prior or (interval.low_open and interval.high_open):
-        if flat:
-            depends = "do not depend" if len(flat) > 1 else "does not depend"
-            prior = " What is said of it comes from its prior alone." if from_prior else ""
-            return (
-                f"The {' and the '.join(flat)} {depends} on the {name} {names.said(path, low, high)}.{prior}"
-            )
         return (
             f"The {name} cannot be known from these measurements: any value {names.said(path, low, high)} "
             "fits them, since another parameter makes up for it."
