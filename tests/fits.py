@@ -92,13 +92,14 @@ class Pretend(Executor):
         above = series >= 0.5
         t500 = float(np.interp(0.5, series, time)) if above.any() else None
         summary = {"t500": t500, "final_spread": float(series[-1]), "final_slump": 0.2, "final_height": 0.1}
-        shear = np.geomspace(0.01, 10, 401)[:, None] * np.ones((1, 3))
         fields = {
             "spread_diameter": ("time", series, {"units": "m"}),
             "height": ("time", 0.02 / series**2, {"units": "m"}),
-            "shear_rate": (("time", "particle"), shear),
-            "yielded": (("time", "particle"), np.ones_like(shear)),
         }
+        if data["output"]["particle_history"]:
+            shear = np.geomspace(0.01, 10, 401)[:, None] * np.ones((1, 3))
+            fields["shear_rate"] = (("time", "particle"), shear)
+            fields["yielded"] = (("time", "particle"), np.ones_like(shear))
         with tempfile.TemporaryDirectory() as place:
             path = Path(place) / "history.nc"
             xarray.Dataset(fields, {"time": ("time", time, {"units": "s"})}).to_netcdf(path, engine="netcdf4")

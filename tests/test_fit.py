@@ -2,6 +2,7 @@
 "known."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -10,12 +11,21 @@ from fits import PARAMETERS, VISCOSITY, YIELD_STRESS, Pretend, a_fit, curve, fin
 
 import mpmkit
 from mpmkit.errors import CaseError, GuardStop
+from mpmkit.fitting.model import Budget
 
 FINAL = {"variable": "final_spread", "value": final_spread(150), "uncertainty": 0.005}
 
 
-def test_both_parameters_come_from_a_spread_curve(tmp_path):
-    result = mpmkit.fit(a_fit([curve(tmp_path / "d.csv", 150, 40)]), executor=Pretend())
+@pytest.fixture(scope="module")
+def of_a_curve(tmp_path_factory):
+    """A fit to an exact curve: the fit, its directory, its result, and the runs that were made for it."""
+    place, executor = tmp_path_factory.mktemp("fit"), Pretend()
+    fit = a_fit([curve(place / "d.csv", 150, 40)])
+    return fit, place / "out", mpmkit.fit(fit, place / "out", executor=executor), executor.ran
+
+
+def test_both_parameters_come_from_a_spread_curve(of_a_curve):
+    result = of_a_curve[2]
     found = result.parameters
     assert found[YIELD_STRESS].value == pytest.approx(150, rel=2e-3)
     assert found[VISCOSITY].value == pytest.approx(40, rel=5e-3)
@@ -84,45 +94,56 @@ def test_the_coarser_model_only_leads_the_way(tmp_path):
     assert width[0] > 2 * width[1]
 
 
-def test_runs_are_kept_and_reused(tmp_path):
-    fit, first, again = a_fit([curve(tmp_path / "d.csv", 150, 40)]), Pretend(), Pretend()
-    mpmkit.fit(fit, tmp_path / "out", executor=first)
-    assert len(first.ran) > 5
-    before = (tmp_path / "out/fit.json").read_bytes()
+def test_runs_are_kept_and_reused(of_a_curve, tmp_path):
+    fit, out, _, ran = of_a_curve
+    assert len(ran) > 5
+    again, before = Pretend(), (out / "fit.json").read_bytes()
+    shutil.copytree(out, tmp_path / "out")
     mpmkit.fit(fit, tmp_path / "out", executor=again)
     assert not again.ran
     assert (tmp_path / "out/fit.json").read_bytes() == before
 
 
-def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(tmp_path):
-    measured = [curve(tmp_path / "d.csv", 150, 40)]
-    first = Pretend()
-    cut = mpmkit.fit(a_fit(measured, budget={"runs": 8}), tmp_path / "out", executor=first)
-    assert 0 < len(first.ran) <= 8
+def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(of_a_curve, tmp_path):
+    fit, _, straight, ran = of_a_curve
+    first, rest = Pretend(), Pretend()
+    cut = mpmkit.fit(fit.model_copy(update={"budget": Budget(runs=8)}), tmp_path / "out", executor=first)
     assert any("budget was spent" in sentence for sentence in cut.sentences)
-    rest, whole = Pretend(), Pretend()
-    resumed = mpmkit.fit(a_fit(measured), tmp_path / "out", executor=rest, overwrite=True)
-    straight = mpmkit.fit(a_fit(measured), executor=whole)
+    assert 6 <= len(first.ran) <= 8
+    resumed = mpmkit.fit(fit, tmp_path / "out", executor=rest, overwrite=True)
     assert resumed.parameters == straight.parameters
-    assert len(rest.ran) == len(whole.ran) - len(first.ran)
+    assert not [data for data in rest.ran if data in first.ran]
+    assert all(data in ran for data in rest.ran)
 
 
-def test_what_a_fit_leaves_behind(tmp_path):
-    mpmkit.fit(a_fit([curve(tmp_path / "d.csv", 150, 40), FINAL]), tmp_path / "out", executor=Pretend())
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+def test_what_a_fit_leaves_behind(of_a_curve):
+    _, out, _, ran = of_a_curve
     made = {"asked.json", "fit.json", "runs.nc", "fit.html", "members"}
-    assert names == made | {"fitted.png", "misfit.png", "flow_curve.png"}
-    written = json.loads((tmp_path / "out/fit.json").read_text(encoding="utf-8"))
+    pictures = {"fitted.png", "misfit.png", "flow_curve.png"}
+    assert {path.name for path in out.iterdir()} - {".lock"} == made | pictures
+    written = json.loads((out / "fit.json").read_text(encoding="utf-8"))
     entry = written["parameters"][YIELD_STRESS]
     assert {"value", "low", "high", "level", "identifiable"} <= entry.keys()
-    with xarray.open_dataset(tmp_path / "out/runs.nc") as runs:
+    assert written["runs"] == len(ran) - 1  # one more tells which shear rates were reached
+    with xarray.open_dataset(out / "runs.nc") as runs:
         assert runs.sizes["run"] == written["runs"]
         best = runs.isel(run=int(np.argmin(runs.chi2.values)))
         assert float(best[YIELD_STRESS]) == pytest.approx(150, rel=0.01)
         assert float(best.spread_diameter.isel(time=0)) == pytest.approx(0.2)
-    page = (tmp_path / "out/fit.html").read_text(encoding="utf-8")
+    page = (out / "fit.html").read_text(encoding="utf-8")
     assert YIELD_STRESS in page
     assert "misfit.png" in page
+
+
+def test_the_flow_curve_has_the_band_of_its_parameters(of_a_curve):
+    (found,) = of_a_curve[2].curves
+    parameters = of_a_curve[2].parameters
+    assert found.stress == pytest.approx(150 + 40 * found.rate, rel=2e-3)
+    # Nine tenths of the rates that the run reached, from 0.01 to 10 /s, evenly in the logarithm.
+    assert found.rate[[0, -1]] == pytest.approx([0.01 * 1000**0.05, 0.01 * 1000**0.95], rel=0.02)
+    assert found.low[0] == pytest.approx(parameters[YIELD_STRESS].low + 40 * found.rate[0], rel=1e-3)
+    assert np.all(found.low < found.stress)
+    assert np.all(found.stress < found.high)
 
 
 def test_another_fit_does_not_take_the_place_of_a_result(tmp_path):

@@ -28,6 +28,15 @@ class Coordinates:
         self.paths = list(parameters)
         self.parameters = list(parameters.values())
 
+    @property
+    def have_priors(self) -> bool:
+        return any(parameter.prior is not None for parameter in self.parameters)
+
+    def without_priors(self) -> Coordinates:
+        """The same box, of which nothing is known beforehand."""
+        free = [parameter.model_copy(update={"prior": None}) for parameter in self.parameters]
+        return Coordinates(dict(zip(self.paths, free, strict=True)))
+
     def __len__(self) -> int:
         return len(self.paths)
 

@@ -16,6 +16,8 @@ PLACES = 41
 SMALL = 1e-4
 """Change of a coordinate over which the polynomial is differenced."""
 ITERATIONS = 60
+CLOSE = 1e-7
+"""Change of a coordinate with which a search on the polynomial ends."""
 UNIFORM = 12.0
 """1/variance of a coordinate of which nothing is known but that it is from 0 to 1."""
 DOUBTFUL = 0.05
@@ -56,7 +58,8 @@ class Likelihood:
     def __init__(self, surrogate: Surrogate, misfit: Misfit, coordinates: Coordinates) -> None:
         self.surrogate, self.misfit, self.coordinates = surrogate, misfit, coordinates
         rows = np.vstack([surrogate.coefficients, -misfit.value[None]])
-        self._short = np.transpose(np.linalg.qr(misfit.whitened(rows.T), mode="r"))
+        _, triangle = np.linalg.qr(misfit.whitened(rows.T))
+        self._short = triangle.T
 
     def residuals(self, u: np.ndarray) -> np.ndarray:
         """Numbers whose squares add up to χ², ``(…, q)``, at points ``(…, n)``: priors come last."""
@@ -101,12 +104,12 @@ class Likelihood:
             matrix = np.where(held[:, :, None] | held[:, None, :], unit, matrix)
             change = np.linalg.solve(matrix, np.where(held, 0.0, -gradient)[..., None])[..., 0]
             tried = np.clip(u + change, 0, 1)
+            if np.abs(tried - u).max() < CLOSE:
+                break
             found = self.chi2(tried)
             better = found <= chi2
             u, chi2 = np.where(better[:, None], tried, u), np.where(better, found, chi2)
             damping = np.where(better, damping / 5, np.minimum(damping * 5, 1e8))
-            if np.abs(np.where(better[:, None], change, 0.0)).max() < 1e-9 and better.all():
-                break
         return u
 
     def interval(self, index: int, best: np.ndarray, crit: float) -> Interval:

@@ -151,9 +151,7 @@ def found_in(solution: Solution, level: float) -> dict[str, Found]:
         zip(solution.coordinates.paths, solution.survey.intervals, strict=True)
     ):
         value, low, high = _values(solution, index, interval)
-        found[path] = Found(
-            path, names.unit(path), value, low, high, level, unknowable.identifiable(interval)
-        )
+        found[path] = Found(path, names.unit(path), value, low, high, level, solution.survey.bounded[index])
     return found
 
 

@@ -97,14 +97,23 @@ def prepared(fit: Fit) -> dict[str, tuple[Alternative, list[Test]]]:
         for path, parameter in alternative.parameters.items():
             for one in tests:
                 check_path(one.stages[-1], path)
-                for end in (parameter.low, parameter.high):
-                    one.stages[-1].member({path: end})
+                for end in ("low", "high"):
+                    _require_valid(one, path, end, getattr(parameter, end))
         if not name:
             name = _law(tests[0])
         if name in found:
             raise CaseError(f"laws.{name} has the name of the law of the cases; call it something else")
         found[name] = (alternative, tests)
     return found
+
+
+def _require_valid(test: Test, path: str, end: str, value: float) -> None:
+    """Refuse a bound that the case itself refuses."""
+    try:
+        test.stages[-1].member({path: value})
+    except CaseError as error:
+        sentence = str(error).removeprefix(f"{test.stages[-1].where}: ")
+        raise CaseError(f"parameters.{path}.{end}: {sentence}") from None
 
 
 def _law(test: Test) -> str:

@@ -57,7 +57,10 @@ class Surrogate:
 
     def _terms(self, u: np.ndarray, degree: int) -> np.ndarray:
         x = (u - self._middle) / self._width
-        return np.stack([np.prod(x[..., list(c)], axis=-1) for c in _powers(u.shape[-1], degree)], axis=-1)
+        found: dict[tuple[int, ...], np.ndarray] = {(): np.ones(x.shape[:-1])}
+        for which in _powers(u.shape[-1], degree)[1:]:
+            found[which] = found[which[:-1]] * x[..., which[-1]]
+        return np.stack(list(found.values()), axis=-1)
 
     def terms(self, u: np.ndarray) -> np.ndarray:
         """Terms of the polynomial, ``(…, t)``, at ``(…, n)``: y = terms · coefficients."""

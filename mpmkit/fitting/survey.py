@@ -30,6 +30,8 @@ class Survey:
     likelihood: Likelihood
     best: np.ndarray
     intervals: list[Interval]
+    bounded: list[bool]
+    """whether the measurements, without priors, bound each parameter on both sides"""
     chi2: float
     widened: float
     """χ²/ν, where it is more than chance allows; 1 elsewhere"""
@@ -136,7 +138,12 @@ class Surveyor:
         )
         crit = critical(self._level) * widened
         intervals = [likelihood.interval(index, best, crit) for index in range(len(best))]
-        return Survey(likelihood, best, intervals, chi2, widened, agrees, spent)
+        bounded = [not (interval.low_open or interval.high_open) for interval in intervals]
+        if self._coordinates.have_priors:
+            free = Likelihood(likelihood.surrogate, likelihood.misfit, self._coordinates.without_priors())
+            alone = [free.interval(index, free.minimum(best), crit) for index in range(len(best))]
+            bounded = [not (interval.low_open or interval.high_open) for interval in alone]
+        return Survey(likelihood, best, intervals, bounded, chi2, widened, agrees, spent)
 
     def _agrees(self, found: Survey, point: Point) -> bool:
         """Whether a run has the χ² that the surrogate has there."""

@@ -14,11 +14,6 @@ DOMINANT = 2.0
 """Part of the uncertainty of a row below which it counts as not depending on a parameter."""
 
 
-def identifiable(interval: Interval) -> bool:
-    """Whether the measurements bound a parameter on both sides within the bounds of its search."""
-    return not (interval.low_open or interval.high_open)
-
-
 def correlation(solution: Solution) -> np.ndarray:
     """Of the parameters, along their scales, ``(n, n)``."""
     covariance = solution.survey.likelihood.covariance(solution.survey.best)
@@ -30,7 +25,7 @@ def sentences(solution: Solution, names: Names) -> list[str]:
     """What cannot be known, and what does not fit."""
     said = []
     for index, interval in enumerate(solution.survey.intervals):
-        if not identifiable(interval):
+        if not solution.survey.bounded[index]:
             said.append(_open(solution, names, index, interval))
     said += _bound_together(solution, names)
     said += _missed(solution)
@@ -42,10 +37,12 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     name = names.name(path)
     low, high = (solution.coordinates.value(index, u) for u in (interval.low, interval.high))
     flat = _flat(solution, index, interval)
-    if interval.low_open and interval.high_open:
-        if flat:
-            depends = "do not depend" if len(flat) > 1 else "does not depend"
-            return f"The {' and the '.join(flat)} {depends} on the {name} {names.said(path, low, high)}."
+    from_prior = not (interval.low_open or interval.high_open)
+    if flat:
+        depends = "do not depend" if len(flat) > 1 else "does not depend"
+        prior = " What is said of it comes from its prior alone." if from_prior else ""
+        return f"The {' and the '.join(flat)} {depends} on the {name} {names.said(path, low, high)}.{prior}"
+    if from_prior or (interval.low_open and interval.high_open):
         return (
             f"The {name} cannot be known from these measurements: any value {names.said(path, low, high)} "
             "fits them, since another parameter makes up for it."
