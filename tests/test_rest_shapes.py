@@ -5,6 +5,7 @@ import math
 import pytest
 
 from mpmkit.rheology.deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
+from mpmkit.rheology.laboratory import FORMULAS
 from mpmkit.rheology.rotation import cylinder_torque
 
 G = 9.81
@@ -82,6 +83,13 @@ def test_the_deposit_on_a_slope_ends_as_coussot_says(degrees):
     area = (-(top**2) / 2 - critical * top - critical**2 * math.log(1 - top / critical)) / math.tan(angle)
     assert slope_length(area, sink, angle) == pytest.approx(length, rel=1e-4)
     assert slope_length(area, sink, 1e-4) == pytest.approx(channel_length(area, sink), rel=1e-3)
+
+
+@pytest.mark.parametrize(("density", "yield_stress", "slump"), [(2574, 188.91, 0.228), (2300, 1500, 0.0127)])
+def test_slump_of_slices_is_that_of_schowalter_and_christensen(density, yield_stress, slump):
+    (_, slices, _) = FORMULAS["slump_test"]
+    given = {"density": density, "yield_stress": yield_stress, "mould_height": 0.3}
+    assert slices.value(given) == pytest.approx(slump, abs=5e-4)
 
 
 def test_a_slope_does_not_hold_more_than_the_critical_depth():

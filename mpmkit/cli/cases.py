@@ -9,6 +9,9 @@ from .duration import duration
 from .printing import echo, echo_json
 
 
+DAY = 86400.0
+
+
 @click.command("cases")
 @options.as_json
 def command(as_json: bool) -> None:
@@ -48,7 +51,9 @@ def command(as_json: bool) -> None:
 
 
 def _time(seconds: float | None) -> str:
-    return "–" if seconds is None else duration(max(1.0, seconds))
+    if seconds is None:
+        return "–"
+    return duration(max(1.0, seconds)) if seconds < DAY else f"{seconds / DAY:.1f} days"
 
 
 def _first_sentence(text: str) -> str:

@@ -10,6 +10,7 @@ from .deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, s
 from .rotation import cylinder_torque
 
 G = 9.81
+SQRT3 = math.sqrt(3)
 Given = Mapping[str, float]
 """Parameters of a case, by name, in SI units."""
 
@@ -58,13 +59,18 @@ def _ratio(p: Given, stretching: float) -> float:
     return end / back
 
 
-def _cone_slump(p: Given) -> float:
+def _cone_slump(p: Given, uniaxial: float) -> float:
     """Slump of a cone whose foot is twice as wide as its top, m.
 
     Schowalter & Christensen 1998, J. Rheol. 42: s/H = 1 - h0 - 2τ' ln(7/((1 + h0)³ - 1)); above h0 H the
     material has not yielded, τ' = τ0/(ρ g H) = ((1 + h0) - (1 + h0)⁻²)/6.
+
+    Args:
+        p: parameters.
+        uniaxial: σ/τ0 at which a column yields under its weight. The authors take 2, as of Tresca; it is √3
+            by von Mises, whose yield stress the laws here have, so that τ' becomes √3/2 τ'.
     """
-    relative = sink(p) / p["mould_height"]
+    relative = uniaxial / 2 * sink(p) / p["mould_height"]
     low, high = 0.0, 1.0
     for _ in range(60):
         h0 = (low + high) / 2
@@ -119,13 +125,11 @@ def _layer(measured: str, of: Callable[[Given, float], float], c: float, band: f
 
 FORMULAS: dict[str, list[Formula]] = {
     "slump_test": [
-        Formula("slump_of_highest_point", "slices, Schowalter & Christensen 1998", _cone_slump, None),
-        Formula(
-            "slump_of_highest_point",
-            "Roussel 2006, a fit for slumps of 50 to 250 mm: s = 255 mm - 176 mm · τ0/ρ (Pa m³/kg)",
-            lambda p: 0.255 - 0.176 * p["yield_stress"] / p["density"],
-            None,
-        ),
+        Formula("slump_of_highest_point", "slices that yield at √3 τ0", lambda p: _cone_slump(p, SQRT3), 0.1),
+        Formula("slump_of_highest_point", "slices that yield at 2 τ0, Schowalter & Christensen 1998",
+                lambda p: _cone_slump(p, 2.0), None),
+        Formula("slump_of_highest_point", "a fit, Roussel 2006: 255 mm - 176 mm · τ0/ρ (in Pa m³/kg)",
+                lambda p: 0.255 - 0.176 * p["yield_stress"] / p["density"], None),
     ],
     "slump_flow": _layer("slump_flow", _cone, BIAXIAL, 0.08),
     "mini_cone_kantro": _layer("spread", _cone, BIAXIAL, 0.05),
