@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import click
 
 from . import options
 from .duration import duration
 from .printing import echo, echo_json
 
-
 DAY = 86400.0
+"""s"""
+LONGEST = 100
+"""Characters of what is said of a case."""
 
 
 @click.command("cases")
@@ -57,4 +61,4 @@ def _time(seconds: float | None) -> str:
 
 
 def _first_sentence(text: str) -> str:
-    return text.partition(". ")[0].rstrip(".")
+    return textwrap.shorten(text.partition(". ")[0].rstrip("."), LONGEST, placeholder=" …")
