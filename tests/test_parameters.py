@@ -84,6 +84,14 @@ def test_the_rest_of_the_case_follows_its_parameters():
     assert found == parse_case(expand(apply_overrides(case(), ["parameters.cell=0.02"])))
 
 
+def test_a_limit_is_met_by_what_differs_from_it_by_a_rounding():
+    data = case()
+    data["parameters"]["deep"] |= {"value": 0.0375, "at_least": "= 3 * 0.0125 * cell / cell"}
+    data["parameters"]["cell"]["value"] = 0.005
+    data["grid"]["domain"]["z"] = [0, 0.2]
+    assert parse_case(data).bodies[0].shape.upper[1] == 0.0375
+
+
 def test_the_fine_variant_has_its_own_values():
     assert parse_case(fine(case())).bodies[0].shape.upper == [0.02, 0.1]
 

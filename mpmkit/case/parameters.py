@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from ..errors import CaseError
 from .allowed import one_of, shown
-from .formula import FUNCTIONS, evaluate, names_in, parse, with_numbers
+from .formula import FUNCTIONS, ROUNDING, evaluate, names_in, parse, with_numbers
 from .measurements import NAMES as MEASURED
 from .measurements import SELF as MEASUREMENTS
 from .synonyms import nearest
@@ -31,9 +31,9 @@ SIGN = "="
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 LIMITS = {
     "above": ("above", lambda value, limit: value > limit),
-    "at_least": ("at least", lambda value, limit: value >= limit),
+    "at_least": ("at least", lambda value, limit: value >= limit - ROUNDING * abs(limit)),
     "below": ("below", lambda value, limit: value < limit),
-    "at_most": ("at most", lambda value, limit: value <= limit),
+    "at_most": ("at most", lambda value, limit: value <= limit + ROUNDING * abs(limit)),
 }
 KEYS = ("value", "unit", "description", *LIMITS, "fine")
 

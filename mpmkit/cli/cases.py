@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import click
 
 from . import options
 from .duration import duration
 from .printing import echo, echo_json
+
+DAY = 86400.0
+"""s"""
+LONGEST = 100
+"""Characters of what is said of a case."""
 
 
 @click.command("cases")
@@ -48,8 +55,10 @@ def command(as_json: bool) -> None:
 
 
 def _time(seconds: float | None) -> str:
-    return "–" if seconds is None else duration(max(1.0, seconds))
+    if seconds is None:
+        return "–"
+    return duration(max(1.0, seconds)) if seconds < DAY else f"{seconds / DAY:.1f} days"
 
 
 def _first_sentence(text: str) -> str:
-    return text.partition(". ")[0].rstrip(".")
+    return textwrap.shorten(text.partition(". ")[0].rstrip("."), LONGEST, placeholder=" …")

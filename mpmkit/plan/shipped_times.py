@@ -1,8 +1,10 @@
-"""How long the shipped cases take on this machine, from how long they took on another one.
+"""How long the shipped cases take on this machine, at once and without running any.
 
-``shipped_times.csv`` holds the seconds that each case took there, with one thread, and the seconds that the
-``benchmark`` below took just before; benchmarks/shipped_times.py writes it. The benchmark gathers and
-scatters as a step does: processors that are twice as fast at it run a case in about half of the time.
+``shipped_work.csv`` holds the work of each case, the steps and the particle-steps of a run, which are the
+same on every machine; docs/figures/lab_pages.py writes it. What a step and a particle-step cost was measured
+on one machine, as CPU time of one thread, together with the ``benchmark`` below, which gathers and scatters
+as a step does: a processor that is twice as fast at it is taken to run a case in half of the time. Give or
+take a factor of two: ``mpmkit plan`` measures a case itself.
 """
 
 from __future__ import annotations
@@ -13,7 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-FILE = Path(__file__).with_name("shipped_times.csv")
+FILE = Path(__file__).with_name("shipped_work.csv")
+STEP = 1.0e-3
+"""Seconds that a step takes beside its particles, of a scene with a wall or two."""
+PARTICLE_STEP = {2: 0.9e-6, 3: 1.6e-6}
+"""Seconds for a particle in a step, by the number of dimensions."""
+BENCHMARK = 0.67e-3
+"""Seconds of the benchmark on the machine on which these were measured."""
 PARTICLES, NODES, TRIES = 20_000, 2_000, 9
 
 
@@ -35,7 +43,9 @@ def shipped_seconds() -> dict[tuple[str, str], float]:
     """Expected seconds by the name of a shipped case and its variant, ``coarse`` or ``fine``."""
     with FILE.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    speed = benchmark()
+    slower = benchmark() / BENCHMARK
     return {
-        (row["name"], row["variant"]): float(row["seconds"]) * speed / float(row["benchmark"]) for row in rows
+        (row["name"], row["variant"]): slower
+        * (float(row["steps"]) * STEP + float(row["particle_steps"]) * PARTICLE_STEP[int(row["dimensions"])])
+        for row in rows
     }

@@ -1,0 +1,215 @@
+"""Run the shipped tests of the laboratory, and write a page of each, docs/lab/*.md, with its picture,
+docs/images/lab/*.png, the gallery docs/lab/index.md, and the work of all shipped cases,
+mpmkit/plan/shipped_work.csv.
+
+    python docs/figures/lab_pages.py               # from the runs that there are, in runs/lab
+    python docs/figures/lab_pages.py --run [NAME…] # run these first, default: all
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from common import DOCS
+
+from mpmkit.case import load_case, parse_case
+from mpmkit.case.load import read_json
+from mpmkit.case.parameters import Parameter, fine, has_fine, parameters
+from mpmkit.case.shipped import LABORATORY, shipped
+from mpmkit.output import RunDirectory
+from mpmkit.plan.shipped_times import FILE as WORK
+from mpmkit.report import write_report
+from mpmkit.rheology.laboratory import FORMULAS, THIN
+from mpmkit.solver.memory import expected_particles
+from mpmkit.solver.scene import material_group
+from mpmkit.solver.time_step import choose_step, limits
+
+WORDS = json.loads(Path(__file__).with_name("lab_words.json").read_text(encoding="utf-8"))
+"""Title, a remark on the closed forms, and what the model leaves out, by the name of the case."""
+RUNS = DOCS.parent / "runs" / "lab"
+PAGES, IMAGES = DOCS / "lab", DOCS / "images" / "lab"
+SHARED = {
+    "slump_flow": ["t500_from_lift", "at_rest_since"],
+    "slump_test": ["final_height"],
+    "standing_layer": ["final_spread"],
+}
+"""Figures of the summary that a page shows beside what the case measures."""
+EXPLAINED = {
+    "t500_from_lift": "t500: time to 500 mm from the start of the lift",
+    "at_rest_since": "since when the material has been at rest",
+    "final_height": "height at the end",
+    "final_spread": "width at the end",
+}
+DEPOSITS = "../theory.md#layers-that-come-to-rest"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--run", nargs="*", metavar="NAME", help="cases to run first; default: all")
+    chosen = parser.parse_args()
+    laboratory = [name for name, path in shipped().items() if path.parent.name == LABORATORY]
+    if chosen.run is not None:
+        for name in chosen.run or laboratory:
+            command = [sys.executable, "-m", "mpmkit", "run", shipped()[name], "--threads", "1", "--quiet"]
+            subprocess.run([*command, "--out", RUNS / name, "--overwrite"], check=True)
+    PAGES.mkdir(exist_ok=True)
+    IMAGES.mkdir(exist_ok=True)
+    done = [name for name in laboratory if (RUNS / name / "summary.json").exists()]
+    for name in done:
+        write_report(RUNS / name)
+        outline = RunDirectory(RUNS / name).report / "outline.png"
+        (IMAGES / f"{name}.png").write_bytes(outline.read_bytes())
+        (PAGES / f"{name}.md").write_text(page(name), encoding="utf-8")
+    (PAGES / "index.md").write_text(gallery(done), encoding="utf-8")
+    write_work(done)
+
+
+def summary_of(name: str) -> dict:
+    return json.loads((RUNS / name / "summary.json").read_text(encoding="utf-8"))
+
+
+def page(name: str) -> str:
+    """The page of a case, from its file and its run."""
+    data = read_json(shipped()[name])
+    title, remark, left_out = (WORDS[name][key] for key in ("title", "remark", "left_out"))
+    given, summary = parameters(data), summary_of(name)
+    reported = {key: entry["description"] for key, entry in data.get("measurements", {}).items()}
+    reported |= {key: EXPLAINED[key] for key in SHARED.get(name, [])}
+    lines = [f"# {title}", "", data["description"], "", "```", f"mpmkit init {name} --set yield_stress=…"]
+    lines += [f"mpmkit run {name}.json", "```", "", "## Apparatus and material", ""]
+    lines += table(["parameter", "value", "meaning"], [apparatus(key, entry) for key, entry in given.items()])
+    lines += ["", "## What the run gives", "", f"![{title}](../images/lab/{name}.png)", ""]
+    lines += table(
+        ["reported", "value", "meaning"],
+        [
+            (f"`{key}`", shown(summary[key], summary["units"][key]), meaning)
+            for key, meaning in reported.items()
+        ],
+    )
+    lines += ["", f"{summary['particles']:,} particles, {summary['steps']:,} steps, to t = "
+              f"{summary['simulated_time']:g} s; {state(summary)}.", ""]  # fmt: skip
+    if name in FORMULAS:
+        lines += ["## Held against", ""]
+        lines += table(["closed form", "it says", "the run", "difference"], list(held(name, given, summary)))
+        lines.append("")
+    lines += [remark, ""] if remark else []
+    if any(formula.words == THIN for formula in FORMULAS.get(name, [])):
+        lines += [
+            f"Why the second is too long, and the first is not: [layers that come to rest]({DEPOSITS}).",
+            "",
+        ]
+    lines += ["## What the model leaves out", ""]
+    lines += [f"- {item}" for item in left_out]
+    return "\n".join(lines) + "\n"
+
+
+def title_of(name: str) -> str:
+    return WORDS[name]["title"]
+
+
+def apparatus(key: str, entry: Parameter) -> tuple[str, str, str]:
+    return f"`{key}`", shown(entry.value, entry.unit), entry.description
+
+
+def held(name: str, given: dict[str, Parameter], summary: dict):
+    """A row for each closed form: its number, that of the run, and the difference."""
+    values = {key: entry.value for key, entry in given.items()}
+    for formula in FORMULAS[name]:
+        said, found, unit = (
+            formula.value(values),
+            summary[formula.measured],
+            summary["units"][formula.measured],
+        )
+        difference = f"{100 * (found / said - 1):+.1f} %" if said else "–"
+        yield formula.words, shown(said, unit), shown(found, unit), difference
+
+
+def state(summary: dict) -> str:
+    since = summary["at_rest_since"]
+    return "it still moves at the end" if since is None else f"at rest since t = {since:.3g} s"
+
+
+def shown(value: float | None, unit: str) -> str:
+    if value is None:
+        return "–"
+    if unit == "m" and abs(value) < 2:
+        return f"{1e3 * value:.4g} mm"
+    if unit == "m/s" and abs(value) < 2:
+        return f"{1e3 * value:.4g} mm/s"
+    return f"{value:.4g}" + ("" if unit == "1" else f" {unit}")
+
+
+def table(head: list[str], rows: list[tuple[str, ...]]) -> list[str]:
+    return [f"| {' | '.join(cells)} |" for cells in [head, ["---"] * len(head), *rows]]
+
+
+def gallery(done: list[str]) -> str:
+    """The page that shows all pictures."""
+    lines = [
+        "# The laboratory",
+        "",
+        "Tests that people really do, each one command. `mpmkit cases` lists them with the time that each",
+        "takes on this machine, `mpmkit init NAME` writes one with its parameters at the top, and",
+        "`mpmkit run FILE` runs it. The runs on these pages are the coarse variants as they ship; `--fine`",
+        "writes the fine one.",
+        "",
+    ]
+    rows = []
+    for name in done:
+        summary, given = summary_of(name), parameters(read_json(shipped()[name]))
+        measured = next(iter(read_json(shipped()[name])["measurements"]))
+        if name in FORMULAS:
+            measured = FORMULAS[name][0].measured
+        found = f"{measured}: {shown(summary[measured], summary['units'][measured])}"
+        first = next(held(name, given, summary), None) if name in FORMULAS else None
+        rows.append(
+            (f"[{title_of(name)}]({name}.md)", found, "–" if first is None else f"{first[1]} ({first[3]})")
+        )
+    lines += table(["test", "the run gives", "closed form (difference)"], rows)
+    for name in done:
+        lines += [
+            "",
+            f"## {title_of(name)}",
+            "",
+            f"[![{title_of(name)}](../images/lab/{name}.png)]({name}.md)",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def write_work(done: list[str]) -> None:
+    """Steps and particle-steps of all shipped cases: of their runs, else from their first step."""
+    with WORK.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["name", "variant", "dimensions", "steps", "particle_steps"])
+        for name, path in shipped().items():
+            data = read_json(path)
+            steps, particle_steps = expected = first_step(load_case(path))
+            if name in done:
+                summary = summary_of(name)
+                steps = summary["steps"]
+                particle_steps = summary["particle_steps_per_second"] * summary["wall_time"]
+            dimensions = load_case(path).space_.dim
+            rows.writerow([name, "coarse", dimensions, steps, round(particle_steps)])
+            if has_fine(data):
+                finer = first_step(parse_case(fine(data)))
+                row = (steps * finer[0] / expected[0], particle_steps * finer[1] / expected[1])
+                rows.writerow([name, "fine", dimensions, *(round(value) for value in row)])
+
+
+def first_step(case) -> tuple[int, int]:
+    """Steps and particle-steps of a run that goes on with its first step."""
+    groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
+    fastest = max(body.largest_speed for body in case.bodies)
+    waves = [(group, group.wave_speed) for group in groups]
+    step, _ = choose_step(case.scheme, limits(waves, case.grid.cell_size, fastest, case.scale.rate))
+    steps = round(case.until / step)
+    return steps, steps * expected_particles(case)
+
+
+if __name__ == "__main__":
+    main()

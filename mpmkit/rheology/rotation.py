@@ -1,0 +1,31 @@
+"""Torque of a cylinder that turns in a wide cup of Bingham fluid."""
+
+from __future__ import annotations
+
+import math
+
+
+def cylinder_torque(
+    radius: float, height: float, rate: float, yield_stress: float, viscosity: float
+) -> float:
+    """M, N m, on the side of a cylinder that turns slowly; the fluid is sheared up to the radius β R.
+
+    Reiner & Riwlin for a cup beyond β R, where the shear stress has fallen to τ0: M = 2π β² R² h τ0, with
+
+        β² - 1 - 2 ln β = 2 μ Ω/τ0
+
+    Ω → 0 gives the start of flow, 2π R² h τ0; the ends of a vane add 2R/(3h) of it (Dzuy & Boger 1983). A
+    vane carries what is between its blades along, as a cylinder does.
+
+    Args:
+        radius, height: R and h, m.
+        rate: Ω, rad/s.
+        yield_stress: τ0, Pa.
+        viscosity: μ, Pa s.
+    """
+    low, high = 1.0, 2.0 + math.sqrt(2 * viscosity * rate / yield_stress) * 2
+    for _ in range(80):
+        beta = (low + high) / 2
+        beyond = beta**2 - 1 - 2 * math.log(beta) > 2 * viscosity * rate / yield_stress
+        low, high = (low, beta) if beyond else (beta, high)
+    return 2 * math.pi * (low * radius) ** 2 * height * yield_stress

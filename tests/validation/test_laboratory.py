@@ -1,0 +1,100 @@
+"""The laboratory's tests as they ship, in their coarse variants, against what the literature says of them.
+
+Formulas for the shape in which a layer comes to rest come from lubrication: the yield stress on the floor
+holds the pressure gradient. They leave out what it takes to stretch the layer (``rheology.deposits``), which
+counts by its depth over its length. The no-slip slump of the finite-element reference rests at 0.409 m, where
+lubrication says 0.470 m, and lubrication with stretching 0.409 m. So runs are held against the latter, with
+the bands of the former, and that the former is missed is expected.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from bands import above, below, close_to
+
+import mpmkit
+from mpmkit.case import load_case
+from mpmkit.case.load import read_json
+from mpmkit.case.parameters import parameters
+from mpmkit.case.shipped import shipped_case
+from mpmkit.rheology.laboratory import FORMULAS, THIN, G
+
+pytestmark = pytest.mark.section(8)
+QUICK = {"sagging_film": ("until=0.02",)}
+"""What makes a case short enough for the default run: the film is in its steady flow after 5 ms."""
+FORCES = ("torque_of_vane", "plate_force")
+"""Taken as the mean of the last twentieth of the run: they swing with the sound."""
+
+
+def given(name: str) -> dict[str, float]:
+    """The parameters of a shipped case."""
+    return {key: entry.value for key, entry in parameters(read_json(shipped_case(name))).items()}
+
+
+@cache
+def run(name: str, *changes: str):
+    return mpmkit.run(load_case(shipped_case(name), changes), threads=1)
+
+
+def measured(name: str, what: str, *changes: str) -> float:
+    values = run(name, *changes)[what].values
+    return float(values[-max(1, len(values) // 20) :].mean() if what in FORCES else values[-1])
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+        for name, formulas in FORMULAS.items()
+        if formulas[0].band is not None
+    ],
+)
+def test_the_laboratory_measures_what_its_formula_says(validate, name):
+    formula = FORMULAS[name][0]
+    found = measured(name, formula.measured, *QUICK.get(name, ()))
+    expected = close_to(formula.value(given(name)), rel=formula.band)
+    validate(f"{name}: {formula.measured}", found, expected)
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    reason="too long by 8 to 17 %: lubrication leaves out what it takes to stretch the layer", strict=True
+)
+@pytest.mark.parametrize(
+    "name", ["slump_flow", "mini_cone_kantro", "mini_cone_haegermann", "lcpc_box", "bostwick", "slope"]
+)
+def test_a_deposit_comes_to_rest_where_lubrication_alone_says(validate, name):
+    held, thin = FORMULAS[name]
+    assert thin.words == THIN
+    expected = close_to(thin.value(given(name)), rel=held.band)
+    validate(f"{name}: {thin.measured}, lubrication alone", measured(name, thin.measured), expected)
+
+
+@pytest.mark.parametrize(("part", "hangs"), [(1.05, True), (0.57, False)])
+def test_a_film_hangs_below_its_critical_thickness_and_sags_above_it(validate, part, hangs):
+    """h_c = τ0/(ρ g). The spring of exact yield gives way by 2 τ0 H/(3 G) at most, as its swing begins.
+
+    With τ0/G = 0.3 % this is 0.2 % of the thickness; the film that sags has gone on by 1 % after 0.04 s.
+    """
+    p = given("sagging_film")
+    stress = part * p["density"] * G * p["thickness"]
+    history = run("sagging_film", f"parameters.yield_stress={stress}", "until=0.04")
+    speed = history["momentum"].values[:, 0] / history["total_mass"].values
+    gone = np.trapezoid(speed, history["time"].values) / p["thickness"]
+    name = f"Film on a vertical wall, {1 / part:.3g} h_c thick: way of its middle after 0.04 s, over H"
+    validate(name, gone, below(2e-3, "0") if hangs else above(8e-3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("part", "stands"), [(1.0, True), (0.4, False)])
+def test_a_layer_stands_by_itself(validate, part, stands):
+    """τ0 > ρ g h/√3 is enough for a layer to stand, and less than half of it is not."""
+    p = given("standing_layer")
+    enough = p["density"] * G * p["layer_height"] / math.sqrt(3)
+    found = measured("standing_layer", "settlement", f"parameters.yield_stress={part * enough}")
+    name = f"Layer with {part:g} of ρgh/√3: settlement over its height"
+    validate(name, found, below(0.01, "0") if stands else above(0.05))
