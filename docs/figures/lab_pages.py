@@ -61,12 +61,18 @@ def main() -> None:
     IMAGES.mkdir(exist_ok=True)
     done = [name for name in laboratory if (RUNS / name / "summary.json").exists()]
     for name in done:
-        write_report(RUNS / name)
-        outline = RunDirectory(RUNS / name).report / "outline.png"
-        (IMAGES / f"{name}.png").write_bytes(outline.read_bytes())
+        draw(name)
         (PAGES / f"{name}.md").write_text(page(name), encoding="utf-8")
     (PAGES / "index.md").write_text(gallery(done), encoding="utf-8")
     write_work(done)
+
+
+def draw(name: str) -> None:
+    """The picture of a run, unless it is there and younger than the run."""
+    picture, summary = IMAGES / f"{name}.png", RUNS / name / "summary.json"
+    if not picture.exists() or picture.stat().st_mtime < summary.stat().st_mtime:
+        write_report(RUNS / name)
+        picture.write_bytes((RunDirectory(RUNS / name).report / "outline.png").read_bytes())
 
 
 def summary_of(name: str) -> dict:
