@@ -184,6 +184,7 @@ def gallery(done: list[str]) -> str:
             "",
             f"[![{title_of(name)}](../images/lab/{name}.png)]({name}.md)",
         ]
+    lines += ["", "```{toctree}", ":hidden:", "", *done, "```"]
     return "\n".join(lines) + "\n"
 
 

@@ -16,16 +16,22 @@ CHOSEN_BY = ("law", "kind", "name")
 def page() -> str:
     """A section for each place in a case file at which an object stands."""
     from mpmkit.case import case_schema
+    from mpmkit.case.schema import FORMULA
     from mpmkit.registry import installed
 
-    return "\n".join(Reference(case_schema(installed())).sections())
+    return "\n".join(Reference(case_schema(installed()), FORMULA).sections())
 
 
 class Reference:
-    """The schema, as tables."""
+    """The schema, as tables.
 
-    def __init__(self, schema: dict[str, Any]) -> None:
-        self._schema = schema
+    Args:
+        schema: of case files.
+        anywhere: what may stand at the place of any number, and is not said at each.
+    """
+
+    def __init__(self, schema: dict[str, Any], anywhere: dict[str, Any]) -> None:
+        self._schema, self._anywhere = schema, anywhere
         self._places: dict[str, str] = {}
 
     def sections(self, place: str = "", node: Any = None) -> Iterator[str]:
@@ -88,11 +94,14 @@ class Reference:
             return f"`{json.dumps(node['const'])}`"
         if "enum" in node:
             return ", ".join(f"`{json.dumps(value)}`" for value in node["enum"])
-        inner = [self._value(one) for one in (*node.get("oneOf", ()), *node.get("anyOf", ()))]
+        choices = (one for one in (*node.get("oneOf", ()), *node.get("anyOf", ())) if one != self._anywhere)
+        inner = [self._value(one) for one in choices]
         choices = ", ".join(choice for choice in inner if choice)
         if choices:
             return ", ".join(dict.fromkeys(choices.split(", ")))
         kind = node.get("type")
+        if isinstance(kind, list):
+            return ", ".join(WORDS[one] for one in kind)
         if kind == "array":
             return "list of " + re.sub("^((?:whole )?number)", r"\1s", self._value(node["items"]))
         if kind == "object":
