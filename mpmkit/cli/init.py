@@ -55,6 +55,20 @@ def command(name: str, overrides: tuple[str, ...], fine: bool, out: str | None, 
 
 
 def _of_parameter(override: str, block: dict) -> str:
-    """``yield_stress=50`` as ``parameters.yield_stress=50``, where there is such a parameter."""
+    """``yield_stress=50`` as ``parameters.yield_stress=50``, where there is such a parameter.
+
+    Raises:
+        CaseError: it is neither a parameter nor a place of a case.
+    """
+    from ..case import Case
+    from ..case.synonyms import nearest
+    from ..errors import CaseError
+
     path, sign, value = override.partition("=")
-    return f"parameters.{path}{sign}{value}" if path in block else override
+    if path in block:
+        return f"parameters.{path}{sign}{value}"
+    if "." not in path and path not in Case.model_fields:
+        near = nearest(path, list(block))
+        hint = f"did you mean '{near}'?" if near else f"the parameters are {', '.join(block)}"
+        raise CaseError(f"--set {override}: the case has no parameter '{path}'; {hint}")
+    return override
