@@ -90,7 +90,7 @@ def test_init_writes_the_fine_variant(tmp_path):
          "is bottom_radius"),
         (["film", "--fine"], 2, "the case 'film' has no fine variant"),
         (["slump_test", "--out", "there.json"], 4, "there.json exists"),
-        (["slump_test", "--set", "lifting_sped=1"], 2, "no parameter 'lifting_sped'; did you mean 'lifting_speed'?"),
+        (["slump_test", "--set", "lifting_sped=1"], 2, "'lifting_sped'; did you mean 'lifting_speed'?"),
     ],
 )  # fmt: skip
 def test_a_sentence_says_what_init_cannot_do(tmp_path, monkeypatch, capsys, arguments, code, words):
