@@ -232,9 +232,9 @@ class Simulation:
         except OutOfMemory as error:
             stop(self, error.particle, drawn_out=True)
         if changed:
+            self.ledger.refined(before, height, p)
             with self.blaming:
                 self._renew()
-            self.ledger.refined(before, height, p)
 
     def measured(self) -> dict[str, float | np.ndarray]:
         """What the history records of every scene, by the names of its variables, at the present step."""
