@@ -7,6 +7,7 @@ import pytest
 
 import mpmkit
 from mpmkit.case.measurements import NAMES, TAKEN
+from mpmkit.case.resolved import resolved
 from mpmkit.errors import CaseError
 from mpmkit.running.recorder import COLUMNS, wall_columns
 
@@ -107,3 +108,14 @@ def test_a_parameter_stands_in_the_formula_of_a_measurement():
     data["parameters"] = {"start": {"value": 0.05, "unit": "m", "description": "height at first"}}
     found = mpmkit.parse_case(data)
     assert found.measurements["settled"].formula == "0.05 - height"
+
+
+def test_the_case_of_a_run_has_numbers_only_and_is_the_same(tmp_path):
+    data = case(settled=("start - height", "m"))
+    data["parameters"] = {"start": {"value": 0.05, "unit": "m", "description": "height at first"}}
+    given = mpmkit.parse_case(data)
+    mpmkit.run(given, tmp_path / "run")
+    written = json.loads((tmp_path / "run/case.json").read_text())
+    assert "parameters" not in written
+    again = mpmkit.parse_case(written)
+    assert resolved(again) == resolved(given)
