@@ -65,6 +65,18 @@ def test_depths_and_the_front_of_a_block_are_its_own(space):
     assert history["ratio"].attrs["units"] == "1"
 
 
+def test_no_volume_is_lost_at_a_wall():
+    """The depths of all strips of a cell add up to the volume of what has flowed against a wall."""
+    strips = {f"d{k}": (f"depth({0.01 * k + 0.005})", "m") for k in range(20)}
+    leaning = case(**strips)
+    leaning["grid"]["faces"] |= {"x_min": "slip"}
+    leaning["bodies"][0]["material"] = MATERIAL | {"yield_stress": 10}
+    leaning["until"] = 0.1
+    history = mpmkit.run(mpmkit.parse_case(leaning))
+    total = sum(float(history[name].values[-1]) for name in strips) * 0.01
+    assert total == pytest.approx(0.1 * 0.05, rel=5e-3)  # ρ c² is 800 times the pressure at the foot
+
+
 def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
     measured = case(weight=("force('z_min', 'z') / 9.81", "kg"), nothing=("1 / depth(0.15)", "1/m"))
     history = mpmkit.run(mpmkit.parse_case(measured), tmp_path / "run")
