@@ -7,6 +7,7 @@ import pytest
 
 import mpmkit
 from mpmkit.case.measurements import NAMES, TAKEN
+from mpmkit.case.resolved import resolved
 from mpmkit.errors import CaseError
 from mpmkit.running.recorder import COLUMNS, wall_columns
 
@@ -64,6 +65,18 @@ def test_depths_and_the_front_of_a_block_are_its_own(space):
     assert history["ratio"].attrs["units"] == "1"
 
 
+def test_no_volume_is_lost_at_a_wall():
+    """The depths of all strips of a cell add up to the volume of what has flowed against a wall."""
+    strips = {f"d{k}": (f"depth({0.01 * k + 0.005})", "m") for k in range(20)}
+    leaning = case(**strips)
+    leaning["grid"]["faces"] |= {"x_min": "slip"}
+    leaning["bodies"][0]["material"] = MATERIAL | {"yield_stress": 10}
+    leaning["until"] = 0.1
+    history = mpmkit.run(mpmkit.parse_case(leaning))
+    total = sum(float(history[name].values[-1]) for name in strips) * 0.01
+    assert total == pytest.approx(0.1 * 0.05, rel=5e-3)  # ρ c² is 800 times the pressure at the foot
+
+
 def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
     measured = case(weight=("force('z_min', 'z') / 9.81", "kg"), nothing=("1 / depth(0.15)", "1/m"))
     history = mpmkit.run(mpmkit.parse_case(measured), tmp_path / "run")
@@ -107,3 +120,14 @@ def test_a_parameter_stands_in_the_formula_of_a_measurement():
     data["parameters"] = {"start": {"value": 0.05, "unit": "m", "description": "height at first"}}
     found = mpmkit.parse_case(data)
     assert found.measurements["settled"].formula == "0.05 - height"
+
+
+def test_the_case_of_a_run_has_numbers_only_and_is_the_same(tmp_path):
+    data = case(settled=("start - height", "m"))
+    data["parameters"] = {"start": {"value": 0.05, "unit": "m", "description": "height at first"}}
+    given = mpmkit.parse_case(data)
+    mpmkit.run(given, tmp_path / "run")
+    written = json.loads((tmp_path / "run/case.json").read_text())
+    assert "parameters" not in written
+    again = mpmkit.parse_case(written)
+    assert resolved(again) == resolved(given)

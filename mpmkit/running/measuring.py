@@ -44,8 +44,10 @@ class _Look:
         width = float(grid.extent[1]) if grid.dim == 3 else 1.0
         volume = p.volume / (2 * np.pi * p.position[:, 0]) if space.radial else p.volume
         half = np.minimum(p.box[:, 0], grid.cell_size / 2)
-        left, right = p.position[:, 0] - half, p.position[:, 0] + half
-        part = np.clip(np.minimum(right, high) - np.maximum(left, low), 0.0, None) / (2 * half)
+        # What of a box is beyond a face lies in front of it: no volume may be lost there.
+        left = np.maximum(p.position[:, 0] - half, 0.0)
+        right = np.minimum(p.position[:, 0] + half, float(grid.extent[0]))
+        part = np.clip(np.minimum(right, high) - np.maximum(left, low), 0.0, None) / (right - left)
         return float((volume * part).sum() / ((high - low) * width))
 
     def front(self) -> float:
