@@ -8,6 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from mpmkit.case import case_schema
+from mpmkit.case.schema import FORMULA
 from mpmkit.registry import installed
 
 SCHEMA = case_schema(installed())
@@ -36,7 +37,8 @@ def value_of(node: dict[str, Any]) -> st.SearchStrategy[Any]:
     options = node.get("anyOf") or node.get("oneOf")
     if options:
         carried = {"unit": node["unit"]} if "unit" in node else {}
-        return st.one_of([value_of({**carried, **resolve(option)}) for option in options])
+        numbers = [option for option in options if option != FORMULA]  # a formula gives one of them
+        return st.one_of([value_of({**carried, **resolve(option)}) for option in numbers])
     if node["type"] == "null":
         return st.none()
     if node["type"] == "boolean":
