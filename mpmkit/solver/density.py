@@ -14,6 +14,9 @@ from .particles import Particles
 FULL = 0.75
 """Filling from which a node is full; one that is full, as all around it are, is of the interior."""
 
+TOUCHING = 0.97
+"""Filling of a node on a wall that material touches: 1 - 3 g/2, with g = 0.02 cells between them."""
+
 
 @dataclass(frozen=True)
 class Density:
@@ -24,7 +27,8 @@ class Density:
     scene with areas V / (2πr). Mass over volume is ρ/J in the material and Σ m_p N_np / V_n at a node. Their
     quotient is κ: it is one, whatever the pressure, where particles lie as densely as their volumes say. That
     holds for solids as well, whose J is that of their deformation. The *interior* are the nodes with
-    κ >= 0.75 whose neighbours all have κ >= 0.75 as well; at a surface, less is right.
+    κ >= 0.75 whose neighbours all have κ >= 0.75 as well; at a surface, less is right. So it is at a wall
+    that material leaves: a node on a wall is of the interior only if κ >= 0.97, as with a gap of 0.02 cells.
 
     Means are by volume. Where no node is inside, they are NaN, and so is the worst.
     """
@@ -53,9 +57,13 @@ def density_of(found: Crowding | None, p: Particles, grid: Grid, radial: bool) -
         return nowhere
     block, filling, room = found.block, found.values, found.block.room
     inside = np.flatnonzero(block.own() & (block.least_around(filling) >= FULL))
+    number = np.array(np.unravel_index(inside, block.shape)).T + block.lower
+    at_wall = ((number == 0) & grid.walls[:, 0]) | ((number == grid.cells) & grid.walls[:, 1])
+    kept = ~at_wall.any(axis=1) | (filling[inside] >= TOUCHING)
+    inside, number = inside[kept], number[kept]
     if not len(inside):
         return nowhere
-    place = grid.cell_size * (np.array(np.unravel_index(inside, block.shape)).T + block.lower)
+    place = grid.cell_size * number
     volume = room[inside]
     if radial:  # a ring up to half a cell to either side, and no further than the axis and the last face
         radius, half = place[:, 0], grid.cell_size / 2
