@@ -15,6 +15,8 @@ TOLERANCE = 3e-3
 """Relative change of χ², and of the coordinates, below which a search has come to its end."""
 MOST_STEPS = 8
 """Points that a stage tries at the most, beside those of derivatives."""
+FLOOR = 3.0
+"""A residual that stays: a search ends when χ² falls by less than a part of χ² + 9, however small χ² is."""
 REFUSED = 1e3
 """Residual of every row where a guard stopped the run: the step is taken back and halved."""
 
@@ -60,9 +62,9 @@ class Descent:
         def residuals(u: np.ndarray) -> np.ndarray:
             point = self.points(u)[0]
             if point.predicted is None:
-                return np.full(len(measure) + len(self._coordinates.prior_residuals(u)), REFUSED)
+                return np.full(len(measure) + len(self._coordinates.prior_residuals(u)) + 1, REFUSED)
             return np.concatenate(
-                [measure.residuals(point.predicted.value), self._coordinates.prior_residuals(u)]
+                [measure.residuals(point.predicted.value), self._coordinates.prior_residuals(u), [FLOOR]]
             )
 
         def slopes(u: np.ndarray) -> np.ndarray:
@@ -71,7 +73,7 @@ class Descent:
             likely = np.stack(
                 [measure.whitened(other - here) / h for other, h in zip(others, steps, strict=True)], axis=1
             )
-            return np.vstack([likely, self._prior_slopes(u)])
+            return np.vstack([likely, self._prior_slopes(u), np.zeros(len(u))])
 
         found = least_squares(
             residuals,

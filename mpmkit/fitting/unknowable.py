@@ -10,8 +10,10 @@ from .words import Names, length
 
 BOUND_TOGETHER = 0.95
 """Correlation of two parameters from which on they are not told apart."""
-DOMINANT = 2.0
-"""Part of the uncertainty of a row below which it counts as not depending on a parameter."""
+PLACES = 61
+"""Places along a parameter at which it is seen whether anything depends on it."""
+WIDE = 0.3
+"""Part of an interval over which nothing depends on the parameter, from which on that is what is said."""
 
 
 def correlation(solution: Solution) -> np.ndarray:
@@ -36,12 +38,13 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     path = solution.coordinates.paths[index]
     name = names.name(path)
     low, high = (solution.coordinates.value(index, u) for u in (interval.low, interval.high))
-    flat = _flat(solution, index, interval)
+    flat, flat_low, flat_high = _flat(solution, index, interval)
     from_prior = not (interval.low_open or interval.high_open)
     if flat:
         depends = "do not depend" if len(flat) > 1 else "does not depend"
         prior = " What is said of it comes from its prior alone." if from_prior else ""
-        return f"The {' and the '.join(flat)} {depends} on the {name} {names.said(path, low, high)}.{prior}"
+        between = names.said(path, flat_low, flat_high)
+        return f"The {' and the '.join(flat)} {depends} on the {name} {between}.{prior}"
     if from_prior or (interval.low_open and interval.high_open):
         return (
             f"The {name} cannot be known from these measurements: any value {names.said(path, low, high)} "
@@ -55,21 +58,23 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     )
 
 
-def _flat(solution: Solution, index: int, interval: Interval) -> list[str]:
-    """The measured quantities that change by less than their uncertainty along a parameter alone."""
-    along = np.repeat(solution.survey.best[None], 21, axis=0)
-    along[:, index] = np.linspace(interval.low, interval.high, 21)
+def _flat(solution: Solution, index: int, interval: Interval) -> tuple[list[str], float, float]:
+    """What was measured, and between which values of a parameter alone none of it changes.
+
+    The others stay at their best; to change is to change by more than the uncertainty of a row.
+    """
+    along = np.repeat(solution.survey.best[None], PLACES, axis=0)
+    along[:, index] = np.linspace(interval.low, interval.high, PLACES)
     rows = solution.survey.likelihood.surrogate(along)
-    change = np.ptp(rows, axis=0) / solution.survey.likelihood.misfit.total
-    found, start = [], 0
-    for test in solution.runs.tests:
-        for one in test.measured:
-            part = change[start : start + len(one.value)]
-            start += len(one.value)
-            if part.max() < DOMINANT:
-                found.append(one.quantity.words)
-    every = sum(len(test.measured) for test in solution.runs.tests)
-    return list(dict.fromkeys(found)) if len(found) == every else []
+    off = np.abs(rows - solution.fitted) / solution.survey.likelihood.misfit.total
+    middle = int(np.argmin(np.abs(along[:, index] - interval.best)))
+    changed = np.flatnonzero(off.max(axis=1) > 1)
+    first = max(changed[changed < middle], default=-1) + 1
+    last = min(changed[changed > middle], default=PLACES) - 1
+    measured = [one.quantity.words for test in solution.runs.tests for one in test.measured]
+    low, high = (solution.coordinates.value(index, along[place, index]) for place in (first, last))
+    wide = along[last, index] - along[first, index] >= WIDE * (interval.high - interval.low)
+    return (list(dict.fromkeys(measured)) if wide else []), low, high
 
 
 def _bound_together(solution: Solution, names: Names) -> list[str]:
