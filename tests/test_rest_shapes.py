@@ -63,6 +63,13 @@ def test_depths_in_the_l_box(yield_stress, back, ratio, plane_ratio):
     assert h2 / h1 == pytest.approx(plane_ratio, abs=6e-3)
 
 
+def test_the_ends_of_a_closed_channel_add_their_force_to_the_friction_of_the_floor():
+    """ρ g (h1² - h2²)/2 = τ0 L + π τ0 (h1 + h2)/2."""
+    sink, length = 50 / (2300 * G), 0.8
+    h1, h2 = box_depths(0.06, length, sink, stretching=PLANE)
+    assert (h1**2 - h2**2) / 2 == pytest.approx(sink * (length + PLANE * (h1 + h2) / 2), rel=1e-3)
+
+
 def test_the_plane_deposit_is_that_of_the_dam_break():
     sink, area = 188.91 / (2574 * G), 0.03
     assert channel_length(area, sink) == pytest.approx((9 * area**2 / (8 * sink)) ** (1 / 3), rel=1e-5)

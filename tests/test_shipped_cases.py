@@ -113,4 +113,4 @@ def test_a_wheel_holds_them(tmp_path):
     with zipfile.ZipFile(wheel) as file:
         names = set(file.namelist())
     assert {f"mpmkit/cases/lab/{name}.json" for name in LAB} <= names
-    assert "mpmkit/plan/shipped_times.csv" in names
+    assert "mpmkit/plan/shipped_work.csv" in names

@@ -18,6 +18,7 @@ SECTIONS = {
     4: "Limits and thresholds",
     5: "The method itself",
     6: "Faces of the domain",
+    8: "Tests of the laboratory",
     0: "Everything else",
 }
 PASS, FAIL, KNOWN, CRASH = "pass", "**fail**", "**fail** (known)", "**did not finish**"

@@ -27,6 +27,8 @@ PLANE = math.pi
 BIAXIAL = math.sqrt(3) * math.pi / 2
 """c of a layer that widens alike along both."""
 STEPS = 2000
+ROUNDS = 3
+"""In which the force of the ends of a closed channel is found; it hardly changes with the depths."""
 
 
 def cone_spread(volume: float, sink: float, stretching: float = 0.0) -> float:
@@ -80,25 +82,33 @@ def box_depths(
 ) -> tuple[float, float]:
     """Depths, m, at the back and at the end of a closed channel that material has filled to its end.
 
+    The layer is stretched where it leaves the back wall and pressed together where it meets the end wall, so
+    that c changes its sign on the way. Over the whole channel that is a force of c τ0 (h1 + h2)/2 beside the
+    friction τ0 L, and is here spread evenly over it: s becomes s (1 + c (h1 + h2)/(2 L)).
+
     Args:
         area: m², volume over the width of the channel.
         length: m, of the channel.
-        sink, width, stretching: as of ``channel_length``.
+        sink, width: as of ``channel_length``.
+        stretching: c of the two ends.
     """
 
-    def depths(end: float) -> tuple[float, float]:
-        """Depth at the back, and area, for a depth at the end."""
+    def depths(end: float, s: float) -> tuple[float, float]:
+        """Depth at the back, and area, for a depth at the end: h dh/dx = -s (1 + 2h/b), second order."""
         h, step, filled = end, length / STEPS, 0.0
         for _ in range(STEPS):
-            middle = h + step / 2 / (_slope(h, sink, stretching) / (1 + 2 * h / width))
-            following = h + step / (_slope(middle, sink, stretching) / (1 + 2 * middle / width))
+            middle = h + step / 2 * s * (1 + 2 * h / width) / h
+            following = h + step * s * (1 + 2 * middle / width) / middle
             filled += (h + following) / 2 * step
             h = following
         return h, filled
 
-    least = stretching * sink / 2 + 1e-4 * math.sqrt(sink * length)
-    end = _bisect(lambda h: depths(h)[1] - area, least, area / length)
-    return depths(end)[0], end
+    back = end = area / length
+    for _ in range(ROUNDS):
+        s = sink * (1 + stretching * (back + end) / (2 * length))
+        end = _bisect(lambda h, s=s: depths(h, s)[1] - area, 1e-2 * area / length, area / length)  # type: ignore[misc]
+        back = depths(end, s)[0]
+    return back, end
 
 
 def slope_length(area: float, sink: float, angle: float, stretching: float = 0.0) -> float:
