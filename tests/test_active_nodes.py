@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 from itertools import pairwise, product
 
-import numba
 import numpy as np
 import pytest
 
@@ -103,7 +102,7 @@ def narrow(cells):
 
 
 def test_no_two_entries_of_a_plane_share_a_node():
-    """They are handled in parallel. Along a periodic axis of one cell three planes have the same image."""
+    """Along a periodic axis of one cell three planes have the same image."""
     for faces, cells in narrow([1, 2, 3]):
         _, _, _, active = reached(faces, cells, 0)
         for first, behind in pairwise(active.plane_first):
@@ -112,10 +111,9 @@ def test_no_two_entries_of_a_plane_share_a_node():
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
-@pytest.mark.parametrize("size", [(0, 4000), (4000, 0), (0, 70, 60), (70, 0, 60), (70, 60, 0)], ids=str)
-def test_two_threads_lose_no_mass_across_a_narrow_period(size, cells):
-    """Over and over on planes of thousands of nodes, which two threads share. Sums of ones are exact."""
-    numba.set_num_threads(2)
+@pytest.mark.parametrize("size", [(0, 400), (400, 0), (0, 7, 6), (7, 0, 6), (7, 6, 0)], ids=str)
+def test_no_mass_is_lost_across_a_narrow_period(size, cells):
+    """Sums of ones are exact."""
     across = size.index(0)
     faces = [[PERIODIC, PERIODIC] if axis == across else [OPEN, OPEN] for axis in range(len(size))]
     number = np.array([n or cells for n in size])
@@ -123,11 +121,9 @@ def test_two_threads_lose_no_mass_across_a_narrow_period(size, cells):
     window, lowest = Window(grid), np.zeros((1, len(size)), dtype=np.int64)
     window.cover(lowest[0], number - 1)
     active = ActiveNodes(window, lowest, number[None] - 1)
-    assert np.diff(active.plane_first).max() > kernels.FEW
-    for _ in range(300):
-        window.nodes[:, 0] = 1.0
-        kernels.fold(window.nodes, active.faces, active.mirrors, active.plane_first, 0, 1, True)
-        assert window.nodes[:, 0].sum() == len(window.nodes)
+    window.nodes[:, 0] = 1.0
+    kernels.fold(window.nodes, active.faces, active.mirrors, active.plane_first, 0, 1, True)
+    assert window.nodes[:, 0].sum() == len(window.nodes)
 
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
