@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import textwrap
 
-import click
-
 from . import options
+from .command import with_examples
 from .duration import duration
 from .printing import echo, echo_json
 
@@ -16,7 +15,7 @@ LONGEST = 100
 """Characters of what is said of a case."""
 
 
-@click.command("cases")
+@with_examples("cases", "mpmkit cases", "mpmkit cases --json > cases.json")
 @options.as_json
 def command(as_json: bool) -> None:
     """List the cases that ship, and how long each takes on this machine, give or take a factor of two."""

@@ -8,11 +8,12 @@ from typing import Any
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
 
-@click.command("fit")
+@with_examples("fit", "mpmkit fit cases/fits/final_spread.json")
 @click.argument("fit", type=PATH)
 @click.option("--out", type=PATH, metavar="DIR", help="The fit's directory; default: runs/<fit name>.")
 @click.option(

@@ -7,11 +7,17 @@ from pathlib import Path
 import click
 
 from . import options
+from .command import with_examples
 from .paths import PATH
 from .printing import echo
 
 
-@click.command("init")
+@with_examples(
+    "init",
+    "mpmkit init vane --set yield_stress=50",
+    "mpmkit run vane.json --until 0.02",
+    "mpmkit init slump_test --fine --out my_slump.json",
+)
 @click.argument("name")
 @click.option(
     "--set",
