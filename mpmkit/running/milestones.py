@@ -62,12 +62,11 @@ class Milestones:
     **T500** is the time at which the spread diameter first rises to 500 mm, linear between two steps. A body
     that is so wide at the start has none.
 
-    **At rest** means that the material does not move or spread any more.  With U the largest RMS speed of the
-    particles that the run has had, and h the height of the bodies at the start: the RMS speed is at most
-        ``SLOW`` U, the spread
-    diameter changes by at most ``STILL`` h in a time of h / U, and both have been so for at least h / U. The
-    scales come from the run itself, so that water and a stiff paste are judged in the same way. Small elastic
-    oscillations of material at rest do not count as motion.
+    **At rest** means that the material does not move or spread any more. U is the largest RMS speed of the
+    particles so far, and h the height of the bodies at the start. The RMS speed must be at most ``SLOW`` U,
+    the spread diameter must change by at most ``STILL`` h in a time of h / U, and both for at least h / U.
+    These scales come from the run itself, so that water and a stiff paste are judged in the same way. Small
+    elastic oscillations of material at rest do not count as motion.
     """
 
     def __init__(self, simulation: Simulation) -> None:

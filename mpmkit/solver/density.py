@@ -28,8 +28,7 @@ class Density:
     is κ: it is 1 at any pressure if the positions of the particles agree with their volumes. This also holds
     for solids, whose J is that of their deformation. The *interior* consists of the nodes with κ >= 0.75
     whose neighbours all have κ >= 0.75. Smaller values are correct at a free surface, and at a wall from
-    which material separates: a node on a wall is in the interior only if κ >= 0.97 (a gap of at most 0.02
-        cells).
+    which material separates: a node on a wall is in the interior only if κ >= 0.97 (gap <= 0.02 cells).
 
     Means are weighted by volume. Without interior nodes, the means and the worst value are NaN.
     """

@@ -18,7 +18,7 @@ def merge(p: Particles, pairs: np.ndarray, cell_size: float, radial: bool) -> No
         m = Σ m,   V0 = Σ V0,   V = Σ V,   J = Σ w J,   x = Σ w x,   v = Σ w v,   f = Σ w f
 
     for stress, pressure and the state of the law. A mean with positive weights stays within a convex yield
-    surface, and stores no more energy than the two particles if the stored energy is convex.  In an
+    surface, and stores no more energy than the two particles if the stored energy is convex. In an
     axisymmetric scene the radius is r = V0 / (2π A), with the areas A = V0 / (2π r) added up.
 
     The affine velocity is the linear field that fits both particles best, over their boxes with the second
