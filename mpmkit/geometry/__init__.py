@@ -18,7 +18,7 @@ from .sampling import Sample, expected_count, sample
 from .sphere import Sphere
 
 AnyShape = Annotated[Frustum | Cylinder | Box | Sphere | Mesh, Field(discriminator="kind")]
-"""Any shape as it stands in a case file, told apart by its ``kind``."""
+"""Any shape in a case file; its ``kind`` selects the class."""
 
 FILES = {
     get_args(shape.model_fields["kind"].annotation)[0]: shape.files

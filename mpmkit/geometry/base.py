@@ -1,4 +1,4 @@
-"""What every shape answers: where it is, what it contains and how large it is."""
+"""The interface of all shapes: their place, the points inside, and their size."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..spaces import Space
 from .distance import Shell, Solid
 
 TOLERANCE = 1e-9
-"""Part of a shape's largest extent by which a point may miss its surface and still be on it."""
+"""Points closer to the surface than this part of the largest extent count as on the surface."""
 
 
 class Shape(BaseModel):
@@ -23,13 +23,13 @@ class Shape(BaseModel):
 
     A shape is a solid. A plane-strain scene is its cross-section through its axis, 1 m thick: an upright
     cylinder becomes a rectangle of width 2 R, a sphere a disc. An axisymmetric scene turns its half
-    cross-section about r = 0. A point on the surface, to 1e-9 of the largest extent, is inside: whether a
-    lattice point that falls on a face is taken is then not left to rounding, and a symmetric body on a
-    symmetric lattice gets symmetric particles.
+    cross-section about r = 0. A point on the surface, to 1e-9 of the largest extent, is inside. So
+    lattice points on a face do not depend on rounding, and a symmetric body on a symmetric lattice gets
+    symmetric particles.
 
-    A new shape gives ``_problem``, ``_bounds``, ``_contains``, ``_size``, ``_volume``, ``_volume_between``
-    and ``_solid``; one with ends that a shell may leave open gives ``ends`` and ``_shell``, and one
-    that is read from a file ``files``, ``content`` and ``content_name``.
+    A new shape implements ``_problem``, ``_bounds``, ``_contains``, ``_size``, ``_volume``,
+    ``_volume_between`` and ``_solid``; a shape with ends that a shell may leave open implements ``ends`` and
+    ``_shell``, and a shape read from a file ``files``, ``content`` and ``content_name``.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
@@ -108,7 +108,7 @@ class Shape(BaseModel):
         return float(self._volume_between(low, high, space))
 
     def middle(self, space: Space) -> tuple[float, float] | None:
-        """Where in 3-D planes x = const and y = const cut it into equal quarters, m; None if they do not.
+        """Position of planes x = const and y = const that cut it into equal quarters in 3-D, m; else None.
 
         Raises:
             CaseError: the space cannot hold the shape.
@@ -117,7 +117,7 @@ class Shape(BaseModel):
         return self._middle() if space.dim == 3 else None
 
     def solid(self, space: Space) -> Solid:
-        """The shape in its space, as a solid that tells distances; exact also near edges and corners.
+        """The shape in its space, as a solid with signed distances; exact also near edges and corners.
 
         Raises:
             CaseError: the space cannot hold the shape.
@@ -130,7 +130,7 @@ class Shape(BaseModel):
         return ()
 
     def ends_left_open(self, space: Space) -> tuple[str, ...]:
-        """Those that it leaves open unless it is told otherwise."""
+        """The ends that it leaves open by default."""
         return ()
 
     def shell(self, space: Space, thickness: float, open_ends: Sequence[str] | None = None) -> Solid:
@@ -148,7 +148,7 @@ class Shape(BaseModel):
         return self._shell(space, thickness, self.ends_left_open(space) if open_ends is None else open_ends)
 
     def content(self, field: str) -> bytes:
-        """A file in place of that in ``field``: it gives the same shape to the bit, and needs no other file.
+        """A copy of the file in ``field``: it gives exactly the same shape, and needs no other file.
 
         Raises:
             CaseError: the file cannot be read.
@@ -156,7 +156,8 @@ class Shape(BaseModel):
         raise NotImplementedError(f"{type(self).__name__} names no file in {field}")
 
     def content_name(self, field: str) -> str:
-        """``name_by_content`` of ``content``, from what is in memory: the same wherever the file lies.
+        """``name_by_content`` of ``content``, computed from memory; it does not depend on the place of the
+        file.
 
         Raises:
             CaseError: the file cannot be read.

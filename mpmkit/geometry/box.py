@@ -50,7 +50,7 @@ class Box(Shape):
         return self._brick(space)
 
     def _brick(self, space: Space) -> Brick:
-        """A cylinder is the whole of its section, so that no surface is at the axis."""
+        """A cylinder: the section is extended over the axis, so that no surface is at the axis."""
         lower, upper = np.array(self.lower, dtype=float), np.array(self.upper, dtype=float)
         if self._at_axis(space):
             lower[0] = -upper[0]

@@ -1,4 +1,4 @@
-"""A surface as it is drawn: line segments or triangles where a distance is zero, by marching simplices."""
+"""Drawing of a surface: line segments or triangles at distance zero, by marching simplices."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from .distance.solid import Found
 
 COARSE = 8
-"""Cells along the longest side of the box from which the cells at the surface are looked for."""
+"""Cells along the longest side of the box at the start of the search for the surface."""
 MOST = 100_000
 """Cells at the surface up to which they are halved; in three dimensions each makes about two triangles."""
 SAME = 1e-6
-"""Part of a cell within which two points are one."""
+"""Points closer than this part of a cell are merged."""
 
 
 def contour(
@@ -22,10 +22,9 @@ def contour(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where a distance is zero in a box: line segments in two dimensions, triangles in three.
 
-    Cells of the box are halved where the surface may be in them, and those that are left are divided into
-    simplices (Doi & Koide 1991). In each, d is linear between the corners. The points found so are then put
-    onto the surface along its normal. So flat and round parts are exact; an edge is cut off, by less than a
-    cell.
+    Cells that may contain the surface are halved, and the smallest cells are divided into simplices (Doi &
+    Koide 1991). In each, d is linear between the corners. The points found are then moved onto the surface
+    along its normal. So flat and round parts are exact; an edge is cut off by less than a cell.
 
     Args:
         distance: d, m, (k,), and its gradient, (k, dim), at points, m, (k, dim); |d| must not be larger than
@@ -109,9 +108,9 @@ def _cut(simplices: np.ndarray, inside: int) -> np.ndarray:
 
 
 def _distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where each distinct row of integers, (r, k), stands first, and which of them each row is.
+    """First index of each distinct row of integers, (r, k), and for each row the number of its distinct row.
 
-    Rows are told apart by a number of 64 bits, a hundred times as fast as by comparing them.
+    Rows are compared by a hash of 64 bits, which is a hundred times faster than a direct comparison.
     """
     factors = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
     numbers = (rows.astype(np.uint64) * factors[: rows.shape[1]]).sum(axis=1, dtype=np.uint64)
@@ -120,7 +119,7 @@ def _distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _joined(points: np.ndarray, parts: np.ndarray, same: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points that are the same made one, without the parts that shrink to less by it."""
+    """Merge equal points, and remove parts that collapse."""
     first, number = _distinct(np.round(points / same).astype(np.int64))
     parts = number[parts]
     ordered = np.sort(parts, axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 _POINTS = 1 << 15
-"""Places on the surface that are looked at: what is not seen is below a ten-thousandth of the area."""
+"""Points on the surface that are checked; undetected parts are below a ten-thousandth of the area."""
 
 _OFF = 1e-5
 """How far from the surface, in parts of its extent: farther than the single precision of winding numbers."""
@@ -15,8 +15,8 @@ def crossing(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray | None:
     """A point, (3,), where the winding number is neither 0 nor 1, or None if the surface is sound.
 
     The winding number of a surface with its normals outwards is 1 inside and 0 outside. Where shells overlap
-    it is 2 or more, and part of the surface of one is then in the other; where a cavity leaves its solid, or
-    a surface crosses itself and turns inside out, it is -1. Solids that touch have 1 on either side.
+    it is 2 or more, and a part of one surface is inside the other. Where a cavity leaves its solid, or a
+    surface crosses itself with its inside out, it is -1. Solids that touch have 1 on either side.
 
     Args:
         vertices: corners, m, (v, 3).

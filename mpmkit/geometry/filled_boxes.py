@@ -1,4 +1,4 @@
-"""What of each box of a lattice a body fills."""
+"""The part of each box of a lattice that a body fills."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ POINTS = {2: 8, 3: 4}
 """Points along each axis of a box that the surface cuts, by the number of axes: even, so that a box that a
 plane halves is halved."""
 STEPS = 4
-"""Boxes from one that joins to the one that it joins, at most."""
+"""Largest number of steps from a box to the box that it joins."""
 _EVEN = 1e-9
-"""Relative difference up to which two axes are alike."""
+"""Relative difference up to which two axes count as equal."""
 _MANY = 1 << 13
-"""Cut boxes looked at together."""
+"""Number of cut boxes that are processed together."""
 
 Boxes = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-"""Centres, m, (n, dim); sides, m, (n, dim); whether they are in the part of the body that is kept, (n,); and
-whether they are as they are in the lattice, (n,)."""
+"""Centres, m, (n, dim); sides, m, (n, dim); whether they are in the kept part of the body, (n,); and whether
+they are unchanged boxes of the lattice, (n,)."""
 
 
 def filled_boxes(shape: Shape, space: Space, axes: list[Rows], inside: np.ndarray) -> Boxes:
-    """The boxes whose centres are inside a shape, as long as the body is there.
+    """The boxes whose centres are inside a shape, with lengths adjusted to the body.
 
-    A box that the surface cuts keeps its part along the axis that is most nearly normal to the surface, on
-    the side where the body is; along two or three axes alike if none is nearest. The part of a box whose
-    centre is outside makes the neighbour on that side as much longer. So there is a box for each centre, and
-    none is a sliver.
+    A box that the surface cuts is shortened along the axis closest to the surface normal, on the side of the
+    body; along two or three axes if they are equally close. The part of a box whose centre is outside is
+    added to the length of its neighbour on that side. So there is one box for each centre, and none is very
+    thin.
 
     Args:
         shape, space: the body.
@@ -46,7 +46,7 @@ def filled_boxes(shape: Shape, space: Space, axes: list[Rows], inside: np.ndarra
     some = (part > 0) & (part < 1)
     cut, part, inwards = cut[some], part[some], inwards[some]
     step = _steps(counts, inside, cut, part, inwards)
-    along = np.abs(step).sum(axis=1)  # axes along which a box is cut: several where they are alike
+    along = np.abs(step).sum(axis=1)  # number of axes along which a box is cut
 
     index = np.flatnonzero(inside)
     centre, side, kept = _boxes(axes, counts, index)
@@ -64,7 +64,7 @@ def filled_boxes(shape: Shape, space: Space, axes: list[Rows], inside: np.ndarra
     at, way = np.searchsorted(index, target[joins]), step[last[joins]]
     width = _boxes(axes, counts, cut[joins])[1]
     more = ((1 + part[joins]) ** (1 / along[last[joins]]) - 1)[:, None] * np.abs(way) * width
-    longer, off = np.zeros((2, *side.shape))  # two are added up to the same bits in any order
+    longer, off = np.zeros((2, *side.shape))  # the sum of two numbers does not depend on their order
     np.add.at(longer, at, more)
     np.add.at(off, at, -way * more / 2)
     side += longer
@@ -76,10 +76,10 @@ def filled_boxes(shape: Shape, space: Space, axes: list[Rows], inside: np.ndarra
 def _steps(
     counts: tuple[int, ...], inside: np.ndarray, cut: np.ndarray, part: np.ndarray, inwards: np.ndarray
 ) -> np.ndarray:
-    """Where the body is from each cut box, (n, dim): -1, 0 or 1 along each axis.
+    """Direction from each cut box to the body, (n, dim): -1, 0 or 1 along each axis.
 
-    It is along the axis of the largest component, and of those that are alike. Of these, an axis counts only
-    if the neighbour there is fuller; that across a plane of symmetry is not.
+    It is along the axis of the largest component and axes equal to it. An axis counts only if the neighbour
+    in this direction is fuller; a neighbour across a plane of symmetry is not.
     """
     most = np.abs(inwards).max(axis=1, keepdims=True)
     step = np.where(np.abs(inwards) >= most * (1 - _EVEN), np.sign(inwards), 0).astype(np.int64)
@@ -106,9 +106,9 @@ def _joined(
     cut: np.ndarray,
     step: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The box with its centre inside to which each cut one leads, (n,), and the cut one by whose step.
+    """The box with its centre inside that each cut box joins, (n,), and the cut box with the last step to it.
 
-    -1 for those that have their own, that lead nowhere, or to a box of another part of the body.
+    -1 for boxes with their own centre inside, and for those that lead nowhere or to another part of the body.
     """
     strides = np.array([_stride(counts, a) for a in range(len(counts))])
     number = np.stack(np.unravel_index(cut, counts), axis=1)
@@ -149,7 +149,7 @@ def _any_around(block: np.ndarray) -> np.ndarray:
 def _parts(
     shape: Shape, space: Space, axes: list[Rows], counts: tuple[int, ...], index: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Part of each box that is in the body, (n,), and where its middle is, in sides of the box, (n, dim)."""
+    """Part of each box in the body, (n,), and the position of its middle, in sides of the box, (n, dim)."""
     per_axis = POINTS[space.dim]
     along = (np.arange(per_axis) + 0.5) / per_axis - 0.5
     offset = np.stack(np.meshgrid(*[along] * space.dim, indexing="ij"), axis=-1).reshape(-1, space.dim)

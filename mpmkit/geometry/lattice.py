@@ -1,4 +1,4 @@
-"""Rows of the lattice along one axis, cut where the body ends."""
+"""Rows of the lattice along one axis, cut at the ends of the body."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 WIDEST = 1.5
-"""Most width of a row, in spacings, if there are several in a cell."""
+"""Largest width of a row, in spacings, if there are several in a cell."""
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,12 @@ def rows(
 ) -> Rows:
     """Rows that tile the intervals between neighbouring cuts, without gap or overlap.
 
-    They are those of the lattice, [origin + i s, origin + (i + 1) s]. A row that an end of an interval cuts
-    shares its width evenly with its neighbour: together they become one row if it is at most 3/2 s wide, else
-    two. So rows are 3/4 s to 3/2 s wide, and none is a sliver: thin boxes make the nodes at the surface
-    stiff. With one row in a cell they are s/2 to s wide, because no box may be wider than a cell. An interval
-    thinner than s is one row. A cut within ``near`` of a lattice plane is on it, and rows that no end cuts
-    are exactly those of the lattice.
+    They are those of the lattice, [origin + i s, origin + (i + 1) s]. A row that is cut by an end of an
+    interval is combined with its neighbour: they become one row if it is at most 3/2 s wide, else two equal
+    rows. So rows are 3/4 s to 3/2 s wide, and none is very thin: thin boxes would make the nodes at the
+    surface stiff. With one row in a cell they are s/2 to s wide, because no box may be wider than a cell. An
+    interval thinner than s is one row. A cut within ``near`` of a lattice plane counts as on it, and uncut
+    rows are exactly those of the lattice.
 
     Args:
         cuts: m, in rising order: the ends of the body and the planes between them that divide it.

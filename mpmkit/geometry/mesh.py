@@ -88,7 +88,7 @@ class Mesh(Shape):
         inside = igl.fast_winding_number(vertices, faces, points) > 0.5
         unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
         distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
-        return inside | (distance <= tolerance)  # farther away the distance is nan
+        return inside | (distance <= tolerance)  # farther away the distance is NaN
 
     def _size(self, space: Space) -> float:
         return self._volume(space)
@@ -121,8 +121,8 @@ def _beyond(
 def _volume_beyond(surface: tuple[np.ndarray, np.ndarray], x: float) -> float:
     """∮ (X − x) n_X dA over the part of a surface with X ≥ x, m³.
 
-    By Gauss's theorem that is the volume beyond x of the solid, though the cuts are left open: the integrand
-    is zero on a cut at x and on cuts along X.
+    By Gauss's theorem this is the volume of the solid beyond x, although the cuts are open: the integrand is
+    zero on a cut at x and on cuts along X.
     """
     vertices, faces = _beyond(surface, 0, x, 1)
     a, b, c = vertices[faces.T]
@@ -132,7 +132,8 @@ def _volume_beyond(surface: tuple[np.ndarray, np.ndarray], x: float) -> float:
 
 @lru_cache(maxsize=8)
 def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> tuple[Any, str]:
-    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards, and the name of what the file holds.
+    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards, and the name from the file's
+    content.
 
     ``shown`` names it in errors.
     """
@@ -147,7 +148,7 @@ def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float,
     vertices, faces = read_surface(path, shown)
     name = name_by_content(as_ply(vertices, faces), ".ply")
     surface = trimesh.Trimesh(vertices, faces, process=False)
-    # STL repeats each corner in each of its triangles; triangles that shrink to a line by joining them go.
+    # STL repeats each corner in each of its triangles; triangles that collapse by merging are removed.
     surface.merge_vertices(merge_tex=True, merge_norm=True)
     faces = np.asarray(surface.faces)
     degenerate = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
@@ -197,8 +198,8 @@ def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     for shell in range(count):
         own = shells == shell
         inward = _volume(vertices, faces[own]) < 0
-        # Each shell around adds ±1, however it is turned: the sum is odd if their number is. A corner will
-        # not do, because it may lie on another shell that this one touches.
+        # Each surrounding shell adds ±1, for any orientation: the sum is odd if their number is odd. A corner
+        # cannot be used, because it may lie on another shell that this one touches.
         depth = (
             igl.winding_number(vertices, faces[~own], _just_inside(vertices, faces[own], inward))
             if count > 1
@@ -210,7 +211,7 @@ def _outward(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def _why_not_watertight(faces: np.ndarray) -> str:
-    """An edge of one triangle is at a hole; an edge of more than two is where shells touch."""
+    """An edge with one triangle is at a hole; at an edge with more than two, shells touch."""
     edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     _, count = np.unique(edges, axis=0, return_counts=True)
     if (count == 2).all() or (count == 1).any():

@@ -1,4 +1,4 @@
-"""Files that hold a surface mesh: those of users in whatever format, and our copies of them in one."""
+"""Surface mesh files: those of users in many formats, and mpmkit's copies in one format."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from .polygons import Unusable, fans
 from .truncation import ply_head, require_whole_stl
 
 LARGEST = 2**30
-"""Bytes that a mesh's file may have: 1 GiB, twenty million triangles of a binary STL file."""
+"""Largest size of a mesh file, bytes: 1 GiB, twenty million triangles of a binary STL file."""
 
 _BESIDE = re.compile("vertex|line")
-"""Blocks of cells that bound nothing: they may stand beside a surface, and are not needed."""
+"""Blocks of cells without area; a file may contain them in addition to a surface, and they are ignored."""
 
 Surface = tuple[np.ndarray, np.ndarray]
 """Corners (v, 3) and triangles (t, 3)."""
@@ -58,10 +58,10 @@ def read_surface(path: str, shown: str) -> Surface:
 
 
 def require_file(path: str, shown: str) -> stat_result:
-    """What the system says of a file that may be read as a mesh.
+    """The file status of a file that may be read as a mesh.
 
     Raises:
-        CaseError: it is not there, not a file (a folder, a pipe, a device), empty, or too large.
+        CaseError: it is missing, not a file (a folder, a pipe, a device), empty, or too large.
     """
     try:
         found = Path(path).stat()
@@ -94,7 +94,7 @@ def _in_range(vertices: np.ndarray, faces: np.ndarray) -> bool:
 
 
 def _by_meshio_or_trimesh(path: str, kind: str) -> Surface:
-    """By meshio, or by trimesh what meshio cannot read, such as STL with capitals or blank lines."""
+    """Read by meshio; files that meshio cannot read, such as STL with capitals or blank lines, by trimesh."""
     try:
         return _by_meshio(path)
     except Unusable:
@@ -125,7 +125,7 @@ def _by_meshio(path: str) -> Surface:
 
 
 def _is_gmsh(path: str) -> bool:
-    """Whether a .msh file is Gmsh's and not Ansys': meshio itself tries both."""
+    """Whether a .msh file is of Gmsh and not of Ansys; meshio would try both."""
     with open(path, "rb") as file:
         return file.read(64).lstrip()[:1] == b"$"
 
@@ -143,7 +143,7 @@ class _Ending(io.BufferedReader):
 
 @contextlib.contextmanager
 def _silence() -> Iterator[None]:
-    """The readers print their complaints, and meshio leaves by sys.exit for some files."""
+    """Suppress messages that the readers print, and sys.exit, which meshio calls for some files."""
     with (
         contextlib.redirect_stdout(io.StringIO()),
         contextlib.redirect_stderr(io.StringIO()),
@@ -163,7 +163,8 @@ def _by_trimesh(path: str, kind: str) -> Surface:
 def as_ply(vertices: np.ndarray, faces: np.ndarray) -> bytes:
     """A binary PLY file of a surface, from which ``read_surface`` gets every bit back, in the same order.
 
-    By hand, because the names of copies are made from these bytes: a library would put its version in them.
+    It is written without a library, because the names of copies are made from these bytes: a library could
+    write its version into them.
     """
     axes = "".join(f"property double {axis}\n" for axis in "xyz")
     head = (

@@ -22,7 +22,7 @@ TOO_FAST = 1e9
 
 
 class Motion(BaseModel):
-    """A rigid motion, x = point + Q(t) (X - point) + u(t); X is where the point of the body is at first.
+    """A rigid motion, x = point + Q(t) (X - point) + u(t); X is the initial position of a point of the body.
 
     By default it does not turn: Q is the unit matrix.
     """
@@ -34,7 +34,7 @@ class Motion(BaseModel):
 
     @abstractmethod
     def vectors(self) -> dict[str, list[float]]:
-        """Its vectors, by the name of the field: each has a component for each axis of the space."""
+        """Its vectors, by the names of their fields; each has one component per axis of the space."""
 
     @abstractmethod
     def displacement(self, t: float) -> np.ndarray:
@@ -46,14 +46,14 @@ class Motion(BaseModel):
 
     @abstractmethod
     def fastest(self, t0: float, t1: float, hull: Hull) -> float:
-        """Upper bound, m/s, between two times, of the velocity in a body with a ``hull``, see ``Solid``."""
+        """Upper bound, m/s, of the velocity in a body with a ``hull`` between two times, see ``Solid``."""
 
     @abstractmethod
     def in_words(self, axes: tuple[str, ...]) -> str:
-        """What it does, in words that follow the name of a wall; ``axes`` are those of the space."""
+        """The motion in words that follow the name of a wall; ``axes`` are those of the space."""
 
     def problem(self, space: Space) -> str | None:
-        """Why it cannot be in a space, in words that follow "the motion's"; None if it can."""
+        """Why a space cannot have it, in words that follow "the motion's"; None if it can."""
         for field, vector in self.vectors().items():
             if len(vector) != space.dim:
                 return (
@@ -72,12 +72,12 @@ class Motion(BaseModel):
         return x - self.displacement(t)
 
     def turned(self, vectors: np.ndarray, t: float) -> np.ndarray:
-        """Vectors of the body, (k, dim), as they are turned at a time."""
+        """Vectors of the body, (k, dim), rotated to their direction at a time."""
         return vectors
 
 
 class Spell(Motion):
-    """A motion that begins and ends; before it the body is at rest in its place, after it where it came."""
+    """A motion with a start and an end; before and after it, the body is at rest."""
 
     start: float = quantity("s", "time at which it begins; default: 0", default=0.0)
     end: float | None = quantity("s", "time at which it ends; default: never", default=None)
@@ -89,11 +89,11 @@ class Spell(Motion):
         return self
 
     def _elapsed(self, t: float) -> float:
-        """Part of the motion that is done at a time, s."""
+        """Time since the start of the motion, s, limited to its duration."""
         return max(0.0, min(t, math.inf if self.end is None else self.end) - self.start)
 
     def _when(self) -> str:
-        """From when to when it moves, in words."""
+        """The time of the motion in words."""
         return f"from t = {self.start:g} s {'on' if self.end is None else f'to {self.end:g} s'}"
 
     def _moves(self, t0: float, t1: float) -> bool:
@@ -124,8 +124,7 @@ class Uniform(Spell):
 
 
 class Table(Motion):
-    """Displacements at given times with straight lines between them; at rest before the first and after the
-    last."""
+    """Displacements at given times, linear between them; at rest before the first and after the last time."""
 
     kind: Literal["table"]
     times: list[float] = quantity("s", "rising times", min_length=2)
@@ -257,7 +256,7 @@ class Rotation(Spell):
         """K with K r = axis × r, (dim, dim), for the axis of length 1."""
         if self.axis is None:
             return np.array([[0.0, -1.0], [1.0, 0.0]])
-        axis = np.array(self.axis) / np.abs(self.axis).max()  # whose square may be no number
+        axis = np.array(self.axis) / np.abs(self.axis).max()  # avoids overflow of its square
         x, y, z = axis / np.linalg.norm(axis)
         return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
@@ -280,7 +279,7 @@ def _along(vector: list[float], unit: str, axes: tuple[str, ...]) -> str:
 
 
 def _motion_tag(value: Any) -> str:
-    # No tag is the name of a key: in the path of an error the two must not be taken for each other.
+    # Tags differ from all names of keys, so that the path of an error is clear.
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
     return f"by-{kind}"
 
@@ -292,4 +291,4 @@ AnyMotion = Annotated[
     | Annotated[Oscillation, Tag("by-oscillation")],
     Discriminator(_motion_tag),
 ]
-"""Any motion as it stands in a case file, told apart by its ``kind``."""
+"""Any motion in a case file; its ``kind`` selects the class."""

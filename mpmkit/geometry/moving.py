@@ -1,4 +1,4 @@
-"""A solid that moves: what a surface of a solid is in its space."""
+"""A moving solid as the surface of a wall."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ class MovingSolid:
     """A solid wall in its rigid motion, a ``PlacedSurface`` of the contracts.
 
     Args:
-        solid: the wall, where it is without its motion.
+        solid: the wall in its initial position.
         motion: None for a wall at rest.
-        appears, vanishes: s; it is there from the one to the other. None: from the start, for ever.
-        thickness: m; infinite for a wall that has material on one of its sides only.
+        appears, vanishes: s; it exists between these times. None: from the start, without end.
+        thickness: m; infinite for a wall with material on one side only.
         radial: whether the first coordinate is the radius.
-        within: the solid of which it is a part, and whose points it moves with; None: it is no part.
+        within: the solid of which it is a part, and with which it moves; None if it is not a part.
     """
 
     solid: Solid
@@ -35,12 +35,12 @@ class MovingSolid:
 
     @cached_property
     def _hull(self) -> Hull:
-        """That of the solid; of one without an end, which cannot turn, a place."""
+        """The hull of the solid; a point for a solid without an end, which cannot turn."""
         return (self.within or self.solid).hull() or (np.zeros((1, 1)), 0.0)
 
     @cached_property
     def parts(self) -> tuple[MovingSolid, ...]:
-        """Walls that are together this one, each without inner edges."""
+        """Walls whose union is this one, each without inner edges."""
         return tuple(replace(self, solid=part, within=self.solid) for part in self.solid.parts(self.radial))
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
@@ -66,5 +66,5 @@ class MovingSolid:
         return self.motion.fastest(t0, t1, self._hull)
 
     def present(self, t: float) -> bool:
-        """Whether it is there at a time, s."""
+        """Whether it exists at a time, s."""
         return (self.appears is None or t >= self.appears) and (self.vanishes is None or t < self.vanishes)

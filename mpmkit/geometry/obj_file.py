@@ -1,4 +1,4 @@
-"""Wavefront OBJ files: corners and faces, and nothing else of them."""
+"""Reader of Wavefront OBJ files: only corners and faces."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .polygons import Unusable, fans
 def read_obj(path: str) -> tuple[np.ndarray, np.ndarray]:
     """Corners (v, 3) and triangles (t, 3) of an OBJ file; larger polygons are split into fans.
 
-    By hand, because readers at hand are wrong about files that are common: meshio refuses normals and
-    textures of another number than the corners, and both it and trimesh take relative indices for something
-    else where corners and faces alternate.
+    An own reader is needed because other readers fail for common files: meshio refuses files with different
+    numbers of normals, textures and corners, and meshio and trimesh misread relative indices if corners and
+    faces alternate.
 
     Raises:
-        Unusable: a line is not what it must be, or names a corner that is not there.
+        Unusable: a line is not valid, or names a corner that does not exist.
     """
     corners: list[list[float]] = []
     polygons: dict[int, list[list[int]]] = {}

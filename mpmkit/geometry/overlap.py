@@ -1,4 +1,4 @@
-"""How much of two bodies is in the same place."""
+"""Overlap of two bodies."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .base import Shape
 from .box import Box
 
 NEGLIGIBLE = 1e-5
-"""Part of the larger extent by which bodies may overlap: more than single precision rounds off a mesh."""
+"""Allowed overlap relative to the larger extent; it exceeds rounding of meshes in single precision."""
 
 _POINTS = 1 << 17
 """Most points at which two shapes are compared."""
@@ -27,8 +27,8 @@ def shared_volume(
 ) -> float:
     """Volume, m³, that two shapes share; 0 if they only touch.
 
-    It is exact for boxes. Others are compared at points a quarter of a particle apart, or farther if the
-    region is so large that there would be too many; what slips between the points is not seen.
+    It is exact for boxes. Other shapes are compared at points a quarter of a particle apart, or farther in a
+    large region; an overlap between the points is not detected.
 
     Args:
         first: a shape.

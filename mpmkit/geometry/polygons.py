@@ -1,4 +1,4 @@
-"""What the readers of mesh files share."""
+"""Common parts of the readers of mesh files."""
 
 from __future__ import annotations
 

@@ -13,16 +13,16 @@ from .filled_boxes import filled_boxes
 from .lattice import Rows, rows
 
 _SLAB = 1 << 18
-"""Lattice points looked at together: their temporaries fit a cache, or nearly."""
+"""Lattice points processed together, so that temporary arrays nearly fit into a cache."""
 
 _THINNEST = 0.5
 """Least thickness of a body, in spacings of the particles."""
 
 _SMALL = 0.1
-"""Relative change of the volumes of cut boxes that makes up for counting them by points."""
+"""Largest relative correction of the volumes of cut boxes, which are estimated by counting points."""
 
 _SAME_SHARE = 1e-9
-"""Relative difference up to which a cut leaves the same share of the body as of its boxes."""
+"""Relative difference up to which a cut counts as leaving equal parts of the body and of its boxes."""
 
 Corners = tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]
 
@@ -53,15 +53,15 @@ def sample(
 ) -> Sample:
     """Particles in the boxes of the lattice with spacing s_a = Δx/m_a whose centres are inside the shape.
 
-    Boxes are cut where the body ends along an axis and where ``keep`` ends, and a row that is cut shares its
-    width evenly with its neighbour, so that none is a sliver (:func:`mpmkit.geometry.lattice.rows`). At a
-    slanted or curved surface a box is as long as the body is there (``filled_boxes``): the particle is at the
+    Boxes are cut at the ends of the body along an axis and at the ends of ``keep``. A cut row is combined
+    with its neighbour, so that none is very thin (:func:`mpmkit.geometry.lattice.rows`). At a slanted or
+    curved surface, the length of a box is adjusted to the body (``filled_boxes``): the particle is at the
     centre of its box, and the body is as dense at its surface as inside.
 
-    Boxes that are not cut are exactly those of the lattice. What of the others is filled is counted by
-    points; one factor, close to 1, makes all volumes add up to the exact volume of what is kept. Where the
-    kept part has the same share of the body as of the boxes, as at a symmetry plane through the middle, the
-    factor is that of the whole body: a quarter is then the quarter of the whole to the bit.
+    Uncut boxes are exactly those of the lattice. The filled part of the others is estimated by counting
+    points; one factor, close to 1, makes all volumes add up to the exact volume of the kept part. If the kept
+    part is the same share of the body as of the boxes, as at a symmetry plane through the middle, the factor
+    is that of the whole body: a quarter is then exactly the quarter of the whole, bit by bit.
 
     Args:
         shape: the body.
@@ -110,7 +110,7 @@ def sample(
 def _scale_to(total: float, volume: np.ndarray, whole: np.ndarray, which: np.ndarray) -> None:
     """Scale the volumes of cut boxes, in place, so that those of ``which`` add up to a total, m³.
 
-    Where that is no small change, those of all boxes are scaled.
+    If this is not a small change, the volumes of all boxes are scaled.
     """
     cut = ~whole
     full, rest = float(volume[which & whole].sum()), float(volume[which & cut].sum())
@@ -126,7 +126,7 @@ def _none(space: Space) -> Sample:
 
 
 def _cut(lower: np.ndarray, upper: np.ndarray, keep: Corners, near: float) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the part of a box that ``keep`` leaves; a face within ``near`` of the box's does not cut."""
+    """Corners of the part of a box inside ``keep``; a face within ``near`` of the box's face does not cut."""
     low, high = (np.asarray(corner, dtype=float) for corner in keep)
     return (
         np.where(low > lower + near, low, lower),
@@ -141,7 +141,7 @@ def expected_count(
     per_axis: Sequence[int],
     keep: Corners | None = None,
 ) -> float:
-    """Estimate of the number of particles, from exact sizes and without making any.
+    """Estimate of the number of particles from exact sizes, without creating particles.
 
     It is the shape's size over that of a particle. With ``keep`` it is multiplied by the part of the box
     around the shape that is kept; that is exact for boxes and for cuts through planes of symmetry, and a

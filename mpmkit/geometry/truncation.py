@@ -1,4 +1,4 @@
-"""Whether a mesh file is whole: STL and PLY files say how much is in them."""
+"""Check that a mesh file is complete: STL and PLY files contain the size of their data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .polygons import Unusable
 
 @dataclass(frozen=True)
 class PlyHead:
-    """What the head of a PLY file announces.
+    """The header of a PLY file.
 
     Attributes:
         text: whether the numbers are text.
@@ -23,7 +23,7 @@ class PlyHead:
 
     @property
     def plain(self) -> bool:
-        """Whether it is corners that begin with x, y, z and faces with indices alone: what meshio reads."""
+        """Whether meshio can read it: corners that begin with x, y, z, and faces with only indices."""
         if [name for name, _, _ in self.elements] != ["vertex", "face"]:
             return False
         corner, face = (properties for _, _, properties in self.elements)
@@ -34,7 +34,7 @@ def ply_head(path: str) -> PlyHead:
     """The head of a PLY file.
 
     Raises:
-        Unusable: it has none, or one that is truncated; or the file is text and has too few lines.
+        Unusable: it is missing or truncated, or the file is text and has too few lines.
     """
     with open(path, "rb") as file:
         if file.readline().strip() != b"ply":

@@ -54,7 +54,7 @@ class Upright(Shape):
         )
 
     def ends_left_open(self, space: Space) -> tuple[str, ...]:
-        """A mould has neither a floor nor a lid of its own."""
+        """A mould has neither a floor nor a lid."""
         return self.ends(space)
 
     def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
@@ -63,7 +63,7 @@ class Upright(Shape):
         return Jointed(self._turned(trapezium_shell(*shell), space), tuple(plates))
 
     def _turned(self, loops: list[Loop], space: Space) -> Solid:
-        """The section that loops make around the axis of the body; in 3-D what it makes as it turns."""
+        """The section inside loops around the axis of the body; in 3-D, its body of revolution."""
         *middle, foot = self._foot(space)
         if space.dim == 3:
             return Revolved(Section.of(loops, (0.0, foot)), np.array(middle, dtype=float))
@@ -85,7 +85,7 @@ class Upright(Shape):
     def _radius(self, level: np.ndarray) -> np.ndarray:
         """Radius, m, at heights above the bottom, m."""
         bottom, top = self._radii()
-        # Above the tip of a full cone, within the tolerance, the radius would come out negative.
+        # Above the tip of a full cone, within the tolerance, the radius would be negative.
         return np.maximum(bottom + (top - bottom) / self.height * level, 0.0)
 
     def _size(self, space: Space) -> float:

@@ -1,4 +1,4 @@
-"""What a run leaves behind: the history, the frames, the summary and the log, in one run directory."""
+"""The files of a run in its directory: the history, the frames, the summary and the log."""
 
 from .frames import FrameWriter, read_frame, read_frames
 from .history import History

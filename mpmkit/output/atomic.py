@@ -1,4 +1,4 @@
-"""Files that are either the old one or the new one, whenever the process dies."""
+"""Atomic writing: a file is either the old or the new one, even if the process dies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def cannot_write(path: Path, error: Exception) -> OutputError:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a path to write to; its file takes the place of ``path`` once the block has ended well.
+    """Yield a path to write to; its file replaces ``path`` if the block ends without error.
 
     Raises:
-        OutputError: where the block, or the replacement, failed with an ``OSError``.
+        OutputError: the block, or the replacement, failed with an ``OSError``.
     """
     partial = path.with_name(
         f".{path.name}.partial"

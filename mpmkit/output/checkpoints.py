@@ -1,4 +1,4 @@
-"""Checkpoints: from where a run that was stopped goes on. Each has a checksum, and the last two are kept."""
+"""Checkpoints, to continue a stopped run. Each has a checksum, and the last two are kept."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from .atomic import replacing
 
 LOGGER = logging.getLogger("mpmkit")
 KEPT = 2
-"""Should the last one be damaged, there is the one before."""
+"""Number of checkpoints kept: if the last one is damaged, the one before it is used."""
 ANY_VERSION = b"mpmkit checkpoint "
 MAGIC = ANY_VERSION + b"2 sha256 "
 WORDS = "words"
-"""Entry of the archive that holds what is no array, as JSON."""
+"""Entry of the archive with all data that are not arrays, as JSON."""
 
 
 class Damaged(Exception):
-    """A file that is no checkpoint, or only a part of one."""
+    """A file that is not a complete checkpoint."""
 
 
 class OfAnotherVersion(Damaged):
@@ -38,7 +38,7 @@ class OfAnotherVersion(Damaged):
 class Checkpoints:
     """The checkpoints of one run.
 
-    A file is a line with a checksum and an archive of NumPy's; nothing in it is ever executed.
+    A file is a line with a checksum and a NumPy archive; nothing in it is ever executed.
     """
 
     def __init__(self, directory: Path) -> None:
@@ -48,7 +48,7 @@ class Checkpoints:
         """Add a checkpoint, and remove those that are older than the one before.
 
         Raises:
-            OutputError: where it cannot be written; those there are stay.
+            OutputError: it cannot be written; existing ones are kept.
         """
         content = io.BytesIO()
         text = np.frombuffer(json.dumps(words).encode(), dtype=np.uint8)
@@ -61,13 +61,13 @@ class Checkpoints:
                 file.write(MAGIC + hashlib.sha256(body).hexdigest().encode() + b"\n")
                 file.write(body)
                 file.flush()
-                os.fsync(file.fileno())  # or the rename may outlive a power cut, and the content not
+                os.fsync(file.fileno())  # otherwise a power cut may keep the rename but lose the content
         for old in self.paths()[KEPT:]:
             with suppress(OSError):
                 old.unlink()
 
     def newest(self) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Arrays and words of the last checkpoint that is whole.
+        """Arrays and other data of the last valid checkpoint.
 
         Raises:
             CaseError: there is none, or another version of mpmkit wrote it.
@@ -103,10 +103,10 @@ class Checkpoints:
 
 
 def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Arrays and words of a checkpoint.
+    """Arrays and other data of a checkpoint.
 
     Raises:
-        Damaged: it cannot be read, or is not what was written.
+        Damaged: it cannot be read, or its content has changed.
     """
     try:
         content = Path(path).read_bytes()
@@ -128,5 +128,5 @@ def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         ValueError,
         KeyError,
         BadZipFile,
-    ) as error:  # ValueError: objects, that would be unpickled
+    ) as error:  # ValueError: objects that would need unpickling
         raise Damaged("has content that no checkpoint has") from error

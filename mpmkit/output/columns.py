@@ -23,11 +23,11 @@ COLUMNS = (
     Variable("time_step", "s", "time step"),
     Variable("mach_number", "1", "largest speed over the sound speed"),
 )
-"""Those of every history; docs/cases.md defines each. The long names label plots."""
+"""Columns of every history; docs/cases.md defines each. The long names are labels of plots."""
 
 
 def ledger_columns(causes: tuple[str, ...]) -> tuple[Variable, ...]:
-    """The columns of the ledger: over the causes, each adds up to what there is."""
+    """The columns of the ledger; the sum of each over the causes is the present amount."""
     return (
         Variable("ledger_mass", "kg", "mass by cause", dimension="cause", labels=causes),
         Variable(

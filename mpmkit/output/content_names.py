@@ -1,4 +1,4 @@
-"""Names of files that are made from what they hold."""
+"""Names of files, made from their content."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 DIGITS = 32
-"""Of the SHA-256 in hexadecimal, that is 128 bits: no two files are called the same by accident."""
+"""Hexadecimal digits of the SHA-256, 128 bits: two files never have the same name by accident."""
 
 
 def name_by_content(content: bytes, suffix: str) -> str:

@@ -1,4 +1,4 @@
-"""Copies of the files that a case names, each called by what it holds."""
+"""Copies of the files that a case names; each is named by its content."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Copies:
                 partial.write_bytes(content)
 
     def check(self) -> None:
-        """Make sure that each still holds what it is called by.
+        """Check that the content of each copy still agrees with its name.
 
         Raises:
-            CaseError: one does not, or cannot be read.
+            CaseError: it does not agree, or cannot be read.
         """
         for path in self.paths():
             try:
@@ -43,16 +43,16 @@ class Copies:
                 raise CaseError(f"the file '{path}' is not what the run began with: its content has changed")
 
     def paths(self) -> list[Path]:
-        """The copies; what else lies beside them is not ours."""
+        """The copies; other files in the directory belong to the user."""
         return [path for path in sorted(self.directory.glob("*")) if is_name_by_content(path.name)]
 
     def remove(self, but: Container[str] = ()) -> None:
-        """Remove the copies but for some names, and the directory if nothing is left in it.
+        """Remove the copies except some names, and the directory if it is then empty.
 
         Raises:
             OSError: one cannot be removed.
         """
-        if self.directory.is_symlink():  # what it leads to is not ours
+        if self.directory.is_symlink():  # its target belongs to the user
             self.directory.unlink()
             return
         stale = [path for path in self.paths() if path.name not in but]

@@ -20,7 +20,7 @@ class Moment:
     time: float
     """s"""
     share: float
-    """part of all particles that was kept"""
+    """part of all particles that is stored"""
     number: np.ndarray
     """(n,) name of each particle through the run"""
     body: np.ndarray
@@ -30,7 +30,7 @@ class Moment:
     position: np.ndarray
     """(n, dim), m"""
     half_size: np.ndarray
-    """(n, dim) half sides of the box that it stands for, m"""
+    """(n, dim) half sides of its box, m"""
     speed: np.ndarray
     """(n,), m/s"""
     shear_rate: np.ndarray
@@ -42,7 +42,7 @@ class Moment:
         return len(self.number)
 
     def only(self, kept: np.ndarray, share: float = 1.0) -> Moment:
-        """The moment with some of its particles, which are a ``share`` of them."""
+        """The moment with the given particles, a part ``share`` of its present ones."""
         arrays = {name: getattr(self, name)[kept] for name in TYPES}
         return replace(self, share=self.share * share, **arrays)
 
@@ -57,16 +57,16 @@ TYPES = {
     "shear_rate": np.float16,
     "pressure": np.float32,
 }
-"""How each array is kept; half precision is good to a part in 2000."""
+"""Type of each array; half precision is accurate to a part in 2000."""
 LARGEST = float(np.finfo(np.float16).max)
-"""What is above it in half precision is kept as this."""
+"""Largest value in half precision; larger values are cut to it."""
 
 
 def moment_of(time: float, share: float, fields: Mapping[str, np.ndarray]) -> Moment:
     """A moment of arrays ``fields``, by the names of ``TYPES``, in any order of the particles."""
     order = np.argsort(fields["number"], kind="stable")
     arrays = {}
-    with np.errstate(over="ignore", invalid="ignore"):  # of a run that a guard is about to stop
+    with np.errstate(over="ignore", invalid="ignore"):  # of a run that a guard will stop
         for name, kind in TYPES.items():
             values = np.asarray(fields[name])[order]
             arrays[name] = (np.minimum(values, LARGEST) if kind == np.float16 else values).astype(kind)
@@ -87,7 +87,7 @@ def arrays_of(moments: Sequence[Moment]) -> dict[str, np.ndarray]:
 
 
 def moments_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Moment]:
-    """The moments of ``arrays_of``; raises KeyError where something is missing."""
+    """The moments from ``arrays_of``; raises KeyError if an entry is missing."""
     cuts = np.cumsum(arrays["count"])[:-1]
     parts = [np.split(arrays[name], cuts) for name in TYPES]
     return [
@@ -97,7 +97,7 @@ def moments_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Moment]:
 
 
 def write_flow(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
-    """Write the arrays of moments; the file at ``path`` is whole at every moment.
+    """Write the arrays of moments; the file at ``path`` is complete at any time.
 
     Raises:
         OutputError: where it cannot be written.
@@ -107,10 +107,10 @@ def write_flow(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
 
 
 def read_flow(path: Path) -> list[Moment]:
-    """The moments in a file; none where there is no file.
+    """The moments in a file; an empty list if there is no file.
 
     Raises:
-        CaseError: where it is no such file.
+        CaseError: the file is not valid.
     """
     if not path.is_file():
         return []

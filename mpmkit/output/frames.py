@@ -22,13 +22,14 @@ _NAME = re.compile(r"frame_\d{6,}\.vtu")
 
 
 class FrameWriter:
-    """Writes frames into a directory, which starts without any.
+    """Writes frames into a directory without old frames.
 
     Args:
         directory: the ``frames/`` of a run; made if it is not there.
         space: space of the scene; the vectors of a space with two axes (a, b) are written as (a, b, 0), so
             that a viewer shows the scene from the front when it opens.
-        goes_on: whether the frames of a run that goes on are there; ``restore`` says which of them stay.
+        goes_on: whether the directory has frames of the run to be continued; ``restore`` selects those to
+            keep.
     """
 
     def __init__(self, directory: Path, space: Space, goes_on: bool = False) -> None:
@@ -51,7 +52,7 @@ class FrameWriter:
         }
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
-        """Go on after these frames; all others in the directory are removed.
+        """Continue after these frames; all others in the directory are removed.
 
         Raises:
             OutputError: where one cannot be removed, or the list cannot be written.
@@ -63,7 +64,7 @@ class FrameWriter:
     def _remove_others(self) -> None:
         """Remove the frames that are not of this run, and the list."""
         try:
-            # The list goes first: a list without its frames would be worse than frames without a list.
+            # Remove the list first: a list without its frames would be worse than frames without a list.
             for old in (self.directory / LIST_NAME, *frame_files(self.directory)):
                 if old.name not in self.frames:
                     old.unlink(missing_ok=True)
@@ -71,7 +72,7 @@ class FrameWriter:
             raise cannot_write(self.directory, error) from error
 
     def write(self, time: float, step: int, fields: Mapping[str, np.ndarray], position: np.ndarray) -> Path:
-        """Write the particles as they are at a time, and list the frame.
+        """Write the particles at a time, and add the frame to the list.
 
         Args:
             time: simulated time, s.
@@ -100,18 +101,18 @@ class FrameWriter:
         return values
 
     def _write_list(self) -> None:
-        # Someone may have deleted frames meanwhile: ParaView fails of a list that names them.
+        # Frames may have been deleted: ParaView cannot open a list with missing files.
         self.frames = {name: t for name, t in self.frames.items() if (self.directory / name).is_file()}
         write_pvd(self.directory / LIST_NAME, (Entry(time, name) for name, time in self.frames.items()))
 
 
 def frame_files(directory: Path) -> list[Path]:
-    """The frames that runs have written into a directory; other files in it are the user's."""
+    """The frames of runs in a directory; other files in it belong to the user."""
     return [path for path in Path(directory).glob("frame_*.vtu") if _NAME.fullmatch(path.name)]
 
 
 def read_frames(directory: Path) -> list[tuple[float, Path]]:
-    """Times, s, and files of the frames of a directory, in order of time; none where there is no list.
+    """Times, s, and files of the frames of a directory, in order of time; empty if there is no list.
 
     A frame that is listed but has been deleted is left out.
 

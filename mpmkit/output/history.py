@@ -1,4 +1,4 @@
-"""The history: one row for each of many times, kept in memory and rewritten to NetCDF as the run goes."""
+"""The history: one row per time, kept in memory and rewritten to NetCDF during the run."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 FLUSH_INTERVAL = 5.0
 """Least wall time, s, between two rewrites of the file."""
 FLUSH_PAUSE = 20
-"""Least pause after a rewrite, as a multiple of what it took: at most 5 % of the wall time goes into them."""
+"""Least pause after a rewrite, in durations of the rewrite: so they take at most 5 % of the wall time."""
 
 
 class History:
     """Rows of scalars, vectors and, if asked for, particle fields.
 
-    NetCDF cannot be appended to through xarray, so the whole file is rewritten, never more often than it
-    is cheap: a killed process loses the rows since the last rewrite and nothing else.
+    xarray cannot append to NetCDF files, so the whole file is rewritten, but only as often as this is cheap.
+    A killed process loses only the rows since the last rewrite.
 
     Args:
-        columns: what every row holds.
+        columns: the columns of every row.
         attributes: global attributes of the dataset; may be added to until the last write.
         axes: names of the axes of the space, such as ``("r", "z")``.
         particle_variables: the particle fields that a row may hold.
@@ -51,7 +51,7 @@ class History:
         self._times: list[float] = []
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self._columns}
         self._particles: dict[str, list[np.ndarray]] | None = None
-        self._next_flush = -np.inf  # the first row is written at once: a full disk is noticed at the start
+        self._next_flush = -np.inf  # the first row is written at once, to detect a full disk
 
     def __len__(self) -> int:
         return len(self._times)
@@ -95,7 +95,7 @@ class History:
         return found
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
-        """Take up the rows of a checkpoint."""
+        """Restore the rows of a checkpoint."""
         self._times, self._next_flush = state["time"].tolist(), -np.inf
         self._rows = {name: [np.array(row) for row in state[f"row.{name}"]] for name in self._columns}
         names = [key.partition(".")[2] for key in state if key.startswith("particles.")]
@@ -125,13 +125,13 @@ class History:
             of_particle = self._variables[name]
             attributes = {"units": of_particle.units, "long_name": of_particle.long_name}
             variables[name] = (("time", "particle", *of_particle.trailing), _padded(rows), attributes)
-        # Units of a bare "s", without "since", so that no reader takes the numbers for dates or durations.
+        # The unit is "s" without "since", so that no reader converts the numbers to dates or durations.
         time = ("time", np.array(self._times), {"units": "s", "long_name": "simulated time"})
         dataset = xarray.Dataset(variables, {"time": time}, self.attributes)
         return dataset.assign_coords(self._labels(dataset))
 
     def _labels(self, dataset: xarray.Dataset) -> dict[str, tuple]:
-        """Coordinates of the dimensions that the dataset has, beside time."""
+        """Coordinates of the dimensions of the dataset, without time."""
 
         def coordinate(dimension: str, labels: Sequence, long_name: str) -> tuple:
             return dimension, np.array(labels), {"units": "1", "long_name": long_name}
@@ -153,7 +153,7 @@ class History:
         return {name: label for name, label in labels.items() if name in dataset.dims}
 
     def write(self, path: Path) -> None:
-        """Write the rows so far to NetCDF; the file at ``path`` is whole at every moment.
+        """Write the rows so far to NetCDF; the file at ``path`` is complete at any time.
 
         Raises:
             OutputError: where the file cannot be written.
@@ -161,10 +161,10 @@ class History:
         write_dataset(self.dataset(), path)
 
     def flush_if_due(self, path: Path) -> bool:
-        """Write if the last write is long enough ago, and say whether; to be called after every row."""
+        """Write if the last write is old enough, and return whether it did; call it after every row."""
         if clock.monotonic() < self._next_flush:
             return False
-        load_library()  # the first time takes a while, and is no part of what a write takes
+        load_library()  # slow at the first time; not part of the duration of a write
         start = clock.monotonic()
         self.write(path)
         end = clock.monotonic()
@@ -173,7 +173,7 @@ class History:
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:
-    """One array of all rows; particles that a row did not have yet are not a number there."""
+    """One array of all rows; NaN for particles that did not exist yet."""
     most = max(map(len, rows))
     return np.stack(
         [np.pad(r, [(0, most - len(r))] + [(0, 0)] * (r.ndim - 1), constant_values=np.nan) for r in rows]

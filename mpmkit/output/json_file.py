@@ -1,4 +1,4 @@
-"""JSON files of a run: what cannot be written as JSON, NaN and infinity, becomes null."""
+"""JSON files of a run: NaN and infinity, which JSON does not have, become null."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .atomic import replacing
 
 
 def write_json(path: Path, data: Any) -> None:
-    """Write ``data``, of built-in and NumPy types, to a file that is whole at every moment.
+    """Write ``data``, of built-in and NumPy types, to a file that is complete at any time.
 
     Raises:
         OutputError: where the file cannot be written.

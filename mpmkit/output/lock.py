@@ -1,4 +1,4 @@
-"""A lock on a directory: who holds it is alone there, and the system takes it from a process that dies."""
+"""A lock on a directory for one process; the system releases it if the process dies."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .atomic import cannot_write
 
 try:
     import fcntl
-except ImportError:  # Windows, where a file that is open cannot be replaced by another process anyway
+except ImportError:  # Windows: there, another process cannot replace an open file anyway
     fcntl = None  # type: ignore[assignment]
 
 LOCK_NAME = ".lock"
-"""File that is locked. It is removed in the end; where a killed process left one, nobody holds it."""
+"""File that is locked. It is removed at the end; a file left by a killed process is not locked."""
 
 
 class Locked(Exception):
@@ -28,8 +28,8 @@ def locked(directory: Path) -> Iterator[None]:
     """Hold the lock of a directory inside the block.
 
     Raises:
-        Locked: at once, where it is held already.
-        OSError: where the file cannot be made.
+        Locked: it is already held; raised without waiting.
+        OSError: the file cannot be made.
     """
     path = Path(directory) / LOCK_NAME
     file = _hold(path)
@@ -37,17 +37,17 @@ def locked(directory: Path) -> Iterator[None]:
         yield
     finally:
         with suppress(OSError):
-            if os.fstat(file).st_size == 0:  # ours is empty; another one is the user's
-                path.unlink()  # before the lock is given up, so that no one else's file is removed
+            if os.fstat(file).st_size == 0:  # the lock file is empty; other files belong to the user
+                path.unlink()  # before the lock is released, so that no other lock file is removed
         os.close(file)
 
 
 @contextmanager
 def alone_in(directory: Path, what: str) -> Iterator[None]:
-    """As ``locked``, with a sentence for who comes second; ``what`` is a run or a study.
+    """As ``locked``, with an error message if it is held; ``what`` is a run or a study.
 
     Raises:
-        OutputError: another one is at work there, or the directory cannot be written.
+        OutputError: another one is running there, or the directory cannot be written.
     """
     with ExitStack() as held:
         try:
@@ -67,7 +67,7 @@ def _hold(path: Path) -> int:
         file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         try:
             _lock(file)
-            # Between the opening and the lock, the holder before may have removed the file.
+            # Between opening and locking, the previous holder may have removed the file.
             if path.exists() and os.path.samestat(os.fstat(file), path.stat()):
                 return file
         except BaseException:
@@ -84,4 +84,4 @@ def _lock(file: int) -> None:
     except (BlockingIOError, PermissionError) as error:
         raise Locked from error
     except OSError:
-        pass  # a file system without locks: better to run unguarded than not at all
+        pass  # a file system without locks: run without a lock

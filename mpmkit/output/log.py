@@ -1,4 +1,4 @@
-"""The log of a run: what the logger ``mpmkit`` says, with time stamps."""
+"""The log of a run: the messages of the logger ``mpmkit``, with time stamps."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from .atomic import cannot_write
 
 LOGGER = logging.getLogger("mpmkit")
 RECORD = logging.getLogger("mpmkit.record")
-"""For what belongs into ``run.log`` alone: a display leaves it out."""
+"""Marks messages for ``run.log`` only; a display leaves them out."""
 _OPEN: list[RunLog] = []
 """Logs of all runs of this process."""
 _CURRENT: ContextVar[RunLog | None] = ContextVar("run_log", default=None)
-"""Log of the run at work in this thread."""
+"""Log of the run in this thread."""
 _LEVEL_BEFORE = [logging.NOTSET]
 """Level of the logger before the first of them."""
 
 
 class RunLog(logging.FileHandler):
-    """A handler that listens to ``mpmkit`` until it is closed; also a context manager.
+    """A handler of the logger ``mpmkit`` until it is closed; also a context manager.
 
-    It hears what the thread says that opened it, and not what another run says in another thread.
+    It records only messages of the thread that opened it, and not those of runs in other threads.
     """
 
     def __init__(self, path: Path) -> None:
@@ -41,10 +41,10 @@ class RunLog(logging.FileHandler):
         LOGGER.addHandler(self)
 
     def handleError(self, record: logging.LogRecord) -> None:
-        """Let it pass: a run is not worth ending for its log, and a full disk stops the history as well."""
+        """Ignore the error: a run must not end because of its log; a full disk stops the history anyway."""
 
     def close(self) -> None:
-        if self in LOGGER.handlers:  # closed once by the run, and once more by logging at exit
+        if self in LOGGER.handlers:  # closed by the run, and again by logging at exit
             LOGGER.removeHandler(self)
             _OPEN.remove(self)
             if not _OPEN:
@@ -64,10 +64,10 @@ class RunLog(logging.FileHandler):
 
 
 def open_log(path: Path) -> RunLog:
-    """Start to log to a file, at the end of what is in it.
+    """Start to log to a file; messages are appended.
 
     Raises:
-        OutputError: where the file cannot be opened.
+        OutputError: the file cannot be opened.
     """
     try:
         return RunLog(Path(path))

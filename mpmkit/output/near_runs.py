@@ -1,4 +1,4 @@
-"""The run that somebody means who names a directory that is not there."""
+"""Suggestion of an existing run for a missing directory."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from itertools import islice
 from pathlib import Path
 
 RUNS = Path("runs")
-"""Where runs are by default."""
+"""Default directory of runs."""
 MOST = 1000
-"""Directories that are looked at."""
+"""Most directories that are compared."""
 LIKE = 0.75
-"""Least likeness of two names, from 0 to 1, that is taken for a slip of the hand."""
+"""Least similarity of two names, from 0 to 1, that counts as a typing error."""
 
 
 def why_no_run(directory: str | Path) -> str:
-    """Why a directory holds no run, and which one may be meant, as the end of a sentence."""
+    """Why a directory holds no run, and a suggestion, as the end of a sentence."""
     path = Path(directory)
     if path.is_dir():
         return "it is a directory of something else, or of a run that has not ended"
@@ -25,10 +25,10 @@ def why_no_run(directory: str | Path) -> str:
 
 
 def near_run(path: Path) -> Path | None:
-    """The directory of a run whose name is nearest to that of a path, beside it or in ``runs/``."""
+    """The run directory with the name most similar to that of a path, in the same folder or in ``runs/``."""
     best, found = LIKE, None
     for folder in dict.fromkeys((path.parent, RUNS)):
-        with suppress(OSError, ValueError):  # no such folder, or a path that there cannot be
+        with suppress(OSError, ValueError):  # no such folder, or an impossible path
             for run in islice(sorted(folder.iterdir()), MOST):
                 likeness = difflib.SequenceMatcher(None, path.name.casefold(), run.name.casefold()).ratio()
                 if likeness > best and (run / "case.json").is_file():

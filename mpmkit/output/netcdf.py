@@ -1,4 +1,4 @@
-"""NetCDF files: written whole or not at all, and read, at exactly the path that is named."""
+"""NetCDF files: written completely or not at all, and read, at exactly the given path."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 PIECE = bytes(2**20)
 MORE = 2**16
-"""Bytes that a NetCDF file may have beside its arrays."""
+"""Bytes that a NetCDF file may have in addition to its arrays."""
 _ONE_AT_A_TIME = threading.Lock()
-"""HDF5, the library inside netCDF4, crashes when two threads use it, even on files of their own."""
+"""Lock for HDF5, the library inside netCDF4: it crashes if two threads use it, even for different files."""
 
 
 def load_library() -> None:
-    """Load what reads and writes, which takes about a second the first time."""
+    """Load the library, which takes about a second at the first time."""
     import netCDF4  # noqa: F401
     import xarray  # noqa: F401
 
@@ -43,10 +43,11 @@ def read_scalars(path: Path) -> dict[str, tuple[np.ndarray, str, str]]:
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a dataset; the file at ``path`` is whole at every moment.
+    """Write a dataset; the file at ``path`` is complete at any time.
 
     Raises:
-        OutputError: it cannot be written; the sentence has the system's own reason, such as a full disk.
+        OutputError: it cannot be written; the sentence contains the reason of the system, such as a full
+        disk.
     """
     with replacing(path) as partial:
         try:
@@ -55,7 +56,7 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
                 dataset.to_netcdf(partial.absolute(), engine="netcdf4")
         except (RuntimeError, OSError) as error:
             if isinstance(error, OSError) and (error.errno or 0) > 0:
-                raise  # a reason of the system's
+                raise  # the system gives the reason
             _meet_the_reason(partial, dataset.nbytes + MORE)
             raise cannot_write(path, error) from error
 
@@ -68,16 +69,17 @@ def read_dataset(path: Path) -> xarray.Dataset:
     """
     import xarray
 
-    # With the engine, or xarray tries others on what is no NetCDF file, and warns of each.
+    # With the engine; otherwise xarray tries others for an invalid file, and warns about each.
     with _ONE_AT_A_TIME, xarray.open_dataset(Path(path).absolute(), engine="netcdf4") as dataset:
         return dataset.load()
 
 
 def _meet_the_reason(path: Path, size: int) -> None:
-    """Write as many plain bytes to the same place: the library says "HDF error", and the system says why.
+    """Write as many plain bytes to the same place: the library only reports "HDF error", the system the
+    reason.
 
     Raises:
-        OSError: of the system, if it does not let them be written.
+        OSError: from the system, if they cannot be written.
     """
     with path.open("wb") as file:
         for _ in range(0, size, len(PIECE)):

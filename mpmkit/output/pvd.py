@@ -1,4 +1,4 @@
-"""PVD: the list by which ParaView finds the files of a series, with their times."""
+"""PVD: the list of the files of a series with their times, for ParaView."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Entry(NamedTuple):
     time: float
     """s"""
     file: str
-    """from the folder of the list"""
+    """path relative to the folder of the list"""
     part: int = 0
     name: str = ""
 
@@ -31,7 +31,7 @@ def write_pvd(path: Path, entries: Iterable[Entry]) -> None:
     root = ET.Element("VTKFile", type="Collection", version="0.1")
     collection = ET.SubElement(root, "Collection")
     for time, file, part, name in entries:
-        # repr gives back the very same float when it is read
+        # repr keeps the exact value
         named = {"name": name} if name else {}
         ET.SubElement(
             collection,
@@ -44,7 +44,7 @@ def write_pvd(path: Path, entries: Iterable[Entry]) -> None:
 
 
 def read_pvd(path: Path) -> list[Entry]:
-    """The entries of a list whose files are there, in order of time; none where there is no list.
+    """The entries of a list with existing files, in order of time; empty if there is no list.
 
     Raises:
         CaseError: where the list is not one.

@@ -1,4 +1,4 @@
-"""The directory of a run: where each of its files lies, and when it may be overwritten."""
+"""The directory of a run: the paths of its files, and the rules for overwriting."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from .wall_frames import LIST_NAME as WALL_LIST
 from .wall_frames import wall_frame_files
 
 PARTIAL = ".*.partial"
-"""What a killed process may have left."""
+"""Files that a killed process may have left."""
 PICTURES = ("outline", "spread_and_height", "energies", "wall_forces")
-"""Names of the pictures of a report, without their ending."""
+"""Names of the pictures of a report, without their extension."""
 MOVIE = "movie.gif"
-"""The movie that ``mpmkit movie`` writes beside the pictures."""
+"""The movie of ``mpmkit movie``, in the folder of the pictures."""
 PAGE = "index.html"
 """The page of a report."""
 MESHES = "meshes"
-"""Directory of the meshes that the case names; there is none if it names none."""
+"""Directory of the meshes of the case; missing if it has none."""
 
 
 class RunDirectory:
@@ -34,8 +34,8 @@ class RunDirectory:
 
     Args:
         path: the directory; a leading ``~`` is the home folder.
-        overwrite: whether ``claim`` may clear what an earlier run left there.
-        keep: names of copies of meshes that it leaves in any case: the run may have been read from them.
+        overwrite: whether ``claim`` may delete the files of an earlier run there.
+        keep: names of copies of meshes that are never deleted: the case may have been read from them.
     """
 
     def __init__(self, path: Path, overwrite: bool = False, keep: Container[str] = ()) -> None:
@@ -62,7 +62,7 @@ class RunDirectory:
 
     @property
     def flow(self) -> Path:
-        """What the page of the report plays."""
+        """The data for the player of the page."""
         return self.path / "flow.npz"
 
     @property
@@ -92,16 +92,16 @@ class RunDirectory:
 
     @contextmanager
     def claimed(self, resume: bool = False) -> Iterator[None]:
-        """Claim the directory, and keep every other run out of it inside the block.
+        """Claim the directory, and lock it against other runs inside the block.
 
-        With ``resume`` what is in it is of the same run, and stays.
+        With ``resume``, the files in it belong to the same run and are kept.
 
         Raises:
-            CaseError: where something is there that must not be overwritten.
-            OutputError: where another run is at work, or the directory cannot be made or cleared.
+            CaseError: the directory contains files that must not be overwritten.
+            OutputError: another run is running there, or the directory cannot be made or cleared.
         """
         if not resume:
-            self._make()  # what is refused anyway is refused before a lock is put into it
+            self._make()  # refuse an unsuitable directory before a lock file is made in it
         with alone_in(self.path, "run"):
             if not resume:
                 self.claim()
@@ -111,8 +111,8 @@ class RunDirectory:
         """Make the directory, or clear it of an earlier run.
 
         Raises:
-            CaseError: where something is there that must not be overwritten.
-            OutputError: where the directory cannot be made or cleared.
+            CaseError: the directory contains files that must not be overwritten.
+            OutputError: the directory cannot be made or cleared.
         """
         if self._make():
             try:
@@ -121,7 +121,7 @@ class RunDirectory:
                 raise cannot_write(self.path, error) from error
 
     def _make(self) -> bool:
-        """Make the directory if it is not there; returns whether there is something to clear in it."""
+        """Make the directory if it is missing; return whether it contains files to delete."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             filled = any(path.name != LOCK_NAME for path in self.path.iterdir())
@@ -137,11 +137,11 @@ class RunDirectory:
                 f"the directory '{self.path}' is not empty: "
                 "give --overwrite to replace the run in it, or --out DIR to write elsewhere"
             )
-        # A case file of the user's may well be called case.json: only beside results is it the run's own.
+        # A case file of the user may also be called case.json: only with results, it belongs to a run.
         if not (self.case.is_file() and any(path.exists() for path in self._results)):
             raise CaseError(
                 f"the directory '{self.path}' is not empty and does not look like that of a run, so that "
-                "--overwrite leaves it alone: choose another one with --out DIR"
+                "--overwrite does not change it: choose another one with --out DIR"
             )
 
     @property
@@ -149,12 +149,12 @@ class RunDirectory:
         return self.history, self.summary, self.flow, self.frames, self.report, self.checkpoints, self.log
 
     def _clear(self) -> None:
-        """Delete the files that a run writes and nothing else; case and log last, by which a run is known."""
+        """Delete only the files that a run writes; case and log last, because they identify a run."""
         written = [self.history, self.summary, self.flow, *self.path.glob(PARTIAL)]
         pictures = [self.page, self.movie, *(self.report / f"{name}.png" for name in PICTURES)]
         frames = [*frame_files(self.frames), self.frames / LIST_NAME, self.frames / WALL_LIST]
         folders = [(self.frames, frames), (self.report, pictures)]
-        if not self.frames.is_symlink():  # else it is the link that goes
+        if not self.frames.is_symlink():  # a link itself is removed
             folders.insert(0, (self.frames / WALLS, wall_frame_files(self.frames)))
         for directory, files in folders:
             if directory.is_symlink():
@@ -166,5 +166,5 @@ class RunDirectory:
         Checkpoints(self.checkpoints).remove()
         Copies(self.meshes).remove(but=self._keep)
         for directory, _ in folders:
-            with suppress(OSError):  # it is not there, or something of the user's is in it
+            with suppress(OSError):  # it is missing, or contains files of the user
                 directory.rmdir()

@@ -1,4 +1,4 @@
-"""The summary of a run: the few numbers that the run was made for."""
+"""The summary of a run: its main results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 T500_DIAMETER = 0.5
 """Spread diameter, m, at which T500 is taken."""
 LEAST_RATE = 1e-5
-"""m/s; below it nobody would call it spreading, even if the material moves."""
+"""m/s; slower growth does not count as spreading, even if the material moves."""
 UNITS = {
     "t500": "s",
     "t500_from_lift": "s",
@@ -30,18 +30,18 @@ UNITS = {
 """Units of the numbers of a summary."""
 FINISHED, AT_REST, CONDITION = "finished", "at-rest", "condition"
 ENDED = (FINISHED, AT_REST, CONDITION)
-"""Why a run has come to its end: its time is over, the material is at rest, or a variable is far enough."""
+"""Reasons for a regular end: its time is over, the material is at rest, or a variable reached its bound."""
 TRUSTED = (*ENDED, "interrupted", "output-error")
-"""Why a run may have ended without its last state being in doubt; any other reason is that of a guard."""
+"""Reasons for an end with a valid last state; any other reason is the name of a guard."""
 
 
 def trusted_to_the_end(stopped_because: str | None) -> bool:
-    """Whether the last state of a run is one that the run arrived at, and not one that a guard refused."""
+    """Whether the last state of a run is valid, i.e. not refused by a guard."""
     return stopped_because in TRUSTED
 
 
 def trusted_rows(history: xarray.Dataset, stopped_because: str | None) -> xarray.Dataset:
-    """The rows of a history that can be believed: after a guard's stop, all but the last."""
+    """The valid rows of a history: after a stop by a guard, all except the last."""
     if trusted_to_the_end(stopped_because):
         return history
     return history.isel(time=slice(None, -1))
@@ -63,15 +63,15 @@ def summarise(
     ended_by: str | None = None,
     measured: Mapping[str, str] = {},
 ) -> dict[str, Any]:
-    """The content of ``summary.json``; what never happened, or was not recorded, is None.
+    """The content of ``summary.json``; None for events that did not occur or were not recorded.
 
-    A run that a guard stopped never came to its final shape, and the row of its stop may be that of a
-    particle thrown out: it has no final lengths, and it did not come to rest.
+    A run stopped by a guard has no final shape, and its last row may contain an ejected particle: it has no
+    final lengths, and it did not come to rest.
 
     Args:
         history: dataset of a ``History``; its last row is the last state of the run.
         t500: time to a spread of 500 mm, s.
-        at_rest_since: since when the material has been at rest, s.
+        at_rest_since: time since which the material has been at rest, s.
         spread_rate: rate at which the spread diameter grows at the end, m/s.
         particles: number of particles at the end.
         particle_steps: sum of their number over all steps.
@@ -81,7 +81,7 @@ def summarise(
         ended_by: the condition of the case that ended it, as a sentence.
         plugins: the plug-ins and their versions.
         t500_from_lift: time from the start of the lift of a mould to a spread of 500 mm, s.
-        measured: unit of what the case measures, by the name of the variable.
+        measured: units of the measurements of the case, by the name of the variable.
     """
     arrived = trusted_to_the_end(stopped_because)
     return {
@@ -106,17 +106,17 @@ def summarise(
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
-    """The numbers of a summary by name, as attributes of a dataset; what never happened is not a number."""
+    """The numbers of a summary by name, as attributes of a dataset; NaN for events that did not occur."""
     return {name: math.nan if summary[name] is None else summary[name] for name in summary["units"]}
 
 
 def lifted_later(summary: Mapping[str, Any]) -> bool:
-    """Whether a T500 from the start of the lift is another figure than the one from the start of the run."""
+    """Whether T500 from the start of the lift differs from T500 from the start of the run."""
     return summary.get("t500_from_lift") not in (None, summary.get("t500"))
 
 
 def state_at_end(summary: Mapping[str, Any]) -> str | None:
-    """Whether the material still moves, in words; None where the last state is not to be trusted."""
+    """Whether the material still moves, in words; None if the last state is not valid."""
     if not trusted_to_the_end(summary["stopped_because"]):
         return None
     since, rate = summary.get("at_rest_since"), summary.get("final_spread_rate")

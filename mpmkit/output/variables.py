@@ -10,8 +10,8 @@ from dataclasses import dataclass
 class Variable:
     """A column of the history: a number, or with ``component`` a vector along the axes of the space.
 
-    One ``of_walls`` has such an entry for each wall; one ``about`` axes has a component for each of them; one
-    with a ``dimension`` of its own has an entry for each of its ``labels``.
+    With ``of_walls`` it has such an entry for each wall; with ``about`` it has a component for each of these
+    axes; with ``dimension`` it has an entry for each of the ``labels``.
     """
 
     name: str
@@ -32,7 +32,7 @@ class ParticleVariable:
     long_name: str
     trailing: tuple[str, ...] = ()
     shape: tuple[int, ...] = ()
-    """lengths of the trailing dimensions, where the space does not say them"""
+    """lengths of the trailing dimensions, if the space does not define them"""
 
 
 PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
@@ -45,7 +45,7 @@ PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
     "shear_stress": ParticleVariable("Pa", "shear stress √(s:s/2) of the stress deviator"),
     "yielded": ParticleVariable("1", "1 where the material has yielded, 0 where it has not"),
 }
-"""What ``output.particle_history`` may name, beside the state variables of the laws of the case."""
+"""Fields for ``output.particle_history``, in addition to the state variables of the laws of the case."""
 
 OUT_OF_PLANE = {("x", "z"): "y", ("r", "z"): "t"}
 """Name of axis 2 of a tensor where the grid has two axes; t is the hoop direction θ."""

@@ -17,7 +17,7 @@ from .pvd import Entry, read_pvd, write_pvd
 LIST_NAME = "walls.pvd"
 FOLDER = "walls"
 NOTHING = f"{FOLDER}/nothing.vtu"
-"""File of a wall that is not there: without it, a viewer would go on showing the wall where it was last."""
+"""File of a wall that does not exist at a time; otherwise a viewer would show its last position."""
 EMPTY = """<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="0.1">
 <UnstructuredGrid>
@@ -34,11 +34,11 @@ EMPTY = """<?xml version="1.0"?>
 """
 _NAME = re.compile(r"nothing\.vtu|[A-Za-z0-9_-]+_\d{6,}\.vtu")
 CELLS = {2: "line", 3: "triangle"}
-"""What a surface is drawn with, by the number of dimensions."""
+"""Cell types of a drawn surface, by the number of dimensions."""
 
 
 class Drawn(NamedTuple):
-    """A surface as it is drawn, by segments in two dimensions and triangles in three."""
+    """A drawn surface: segments in two dimensions, triangles in three."""
 
     points: np.ndarray
     """m, (p, dim)"""
@@ -49,13 +49,13 @@ class Drawn(NamedTuple):
 
 
 class WallFrameWriter:
-    """Writes the walls of a run into ``frames/walls/``, and their list beside that of the frames.
+    """Writes the walls of a run into ``frames/walls/``, and their list into the folder of the list of frames.
 
     Args:
-        directory: the ``frames/`` of a run, which is there.
+        directory: the ``frames/`` of a run; it must exist.
         space: of the scene.
         names: of the walls, of which each is a part of the list.
-        goes_on: whether those of a run that goes on are there; ``restore`` says which of them stay.
+        goes_on: whether files of the run to be continued exist; ``restore`` selects those to keep.
     """
 
     def __init__(self, directory: Path, space: Space, names: Sequence[str], goes_on: bool = False) -> None:
@@ -75,7 +75,7 @@ class WallFrameWriter:
         }
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
-        """Go on after these; all others are removed.
+        """Continue after these; all others are removed.
 
         Raises:
             OutputError: where one cannot be removed, or the list cannot be written.
@@ -91,7 +91,7 @@ class WallFrameWriter:
     def _remove_others(self) -> None:
         kept = {Path(entry.file).name for entry in self._entries}
         try:
-            # The list goes first: a list without its files would be worse than files without a list.
+            # Remove the list first: a list without its files would be worse than files without a list.
             (self.directory / LIST_NAME).unlink(missing_ok=True)
             for old in wall_frame_files(self.directory):
                 if old.name not in kept:
@@ -102,13 +102,12 @@ class WallFrameWriter:
             raise cannot_write(self.directory / FOLDER, error) from error
 
     def write(self, time: float, step: int, walls: Mapping[str, Drawn | None]) -> None:
-        """Write the walls as they are at a time, and list them.
+        """Write the walls at a time, and add them to the list.
 
         Args:
             time: simulated time, s.
             step: number of the step, which names the files.
-            walls: every wall by name; None for one that is as it was at the time before, whose file is listed
-                again.
+            walls: every wall by name; None for a wall that has not changed, whose last file is listed again.
 
         Raises:
             OutputError: where something cannot be written.
@@ -134,24 +133,24 @@ class WallFrameWriter:
             meshio.write(partial, mesh, file_format="vtu", binary=True)
 
     def _nothing(self) -> str:
-        """The file of a wall that is not there: meshio cannot read a file without cells."""
+        """Write the file of a wall that does not exist; meshio cannot read a file without cells."""
         with replacing(self.directory / NOTHING) as partial:
             partial.write_text(EMPTY, encoding="utf-8")
         return NOTHING
 
     def _write_list(self) -> None:
-        # Someone may have deleted files meanwhile: ParaView fails of a list that names them.
+        # Files may have been deleted: ParaView cannot open a list with missing files.
         there = [entry for entry in self._entries if (self.directory / entry.file).is_file()]
         write_pvd(self.directory / LIST_NAME, there)
 
 
 def wall_frame_files(directory: Path) -> list[Path]:
-    """The files of walls that runs have written into a ``frames/``; others in it are the user's."""
+    """The files of walls of runs in a ``frames/``; other files in it belong to the user."""
     return [path for path in (Path(directory) / FOLDER).glob("*.vtu") if _NAME.fullmatch(path.name)]
 
 
 def read_wall_frames(directory: Path) -> dict[float, dict[str, Path]]:
-    """Files of the walls that are there, by time, s, and name; empty where there is no list.
+    """Files of the existing walls, by time, s, and name; empty if there is no list.
 
     Raises:
         CaseError: where the list is not one.
@@ -165,7 +164,7 @@ def read_wall_frames(directory: Path) -> dict[float, dict[str, Path]]:
 
 
 def read_wall_frame(path: Path) -> Drawn:
-    """A wall as it was written; its vectors have three components.
+    """A wall from a file; its vectors have three components.
 
     Raises:
         CaseError: it cannot be read.

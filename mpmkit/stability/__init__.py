@@ -1,4 +1,4 @@
-"""How long a step a scheme bears: found by trying, and judged by physics."""
+"""The largest stable step of a scheme, found by trials and judged by physical criteria."""
 
 from .bisect import Critical, critical_fraction
 from .combinations import KINDS, combinations

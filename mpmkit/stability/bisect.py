@@ -13,27 +13,27 @@ from .judge import Criteria
 from .trial import trace
 
 FINE = 0.05
-"""Fraction of the fine solution, which is also the smallest that is tried."""
+"""Fraction of the fine solution; also the smallest fraction that is tried."""
 LARGEST = 2.0
-"""Largest fraction that is tried by default: beyond it no explicit scheme is expected to be of use."""
+"""Largest fraction that is tried by default; no explicit scheme is expected to be useful beyond it."""
 CLOSE = 1.06
-"""Ratio of the bracket's ends at which the search is over."""
+"""Ratio of the bracket's ends at which the search ends."""
 
 
 @dataclass(frozen=True)
 class Critical:
-    """What was found for a scheme."""
+    """The result for a scheme."""
 
     fraction: float
     """largest fraction found stable, of the smallest limit that the case does not ignore"""
     unstable: float
-    """smallest fraction found unstable; infinite where none is"""
+    """smallest fraction found unstable; infinite if there is none"""
     broken: str
-    """the criterion that this one broke"""
+    """the criterion that this fraction violated"""
     limit: str
-    """which limit the fractions are of"""
+    """the limit that the fractions refer to"""
     declared: float
-    """fraction that the schemes say they bear"""
+    """largest stable fraction that the schemes declare"""
 
 
 def critical_fraction(case: Case, criteria: Criteria | None = None, largest: float = LARGEST) -> Critical:

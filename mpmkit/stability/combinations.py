@@ -1,4 +1,4 @@
-"""The combinations of schemes and laws that are tried with a case."""
+"""The combinations of schemes and laws for a case."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..registry import installed
 from ..rheology.refit import with_law
 
 KINDS = ("shape", "order", "velocity", "volumetric", "law")
-"""What may be combined."""
+"""Kinds of plug-ins that can be combined."""
 
 
 def combinations(data: dict[str, Any], chosen: dict[str, list[str]]) -> Iterator[tuple[dict[str, str], Case]]:

@@ -1,4 +1,4 @@
-"""Figure: the largest stable step of every combination, against what the schemes take at most."""
+"""Figure: the largest stable step of every combination, and the largest step that its schemes use."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..output.atomic import cannot_write, replacing
 from ..report.style import BLUE, DPI, GREY, VERMILION, figure_style
 
 BREAKS = {"guard": "X", "energy": "^", "momentum": "s", "distance": "D"}
-"""Marker of the smallest unstable step, by the criterion that it broke."""
+"""Marker of the smallest unstable step, by the violated criterion."""
 WRONG = {
     "guard": "stopped by a guard",
     "energy": "creates energy",
@@ -21,7 +21,7 @@ WRONG = {
 
 
 def picture_in(directory: Path) -> Path:
-    """Where the map of a directory lies."""
+    """Path of the map in a directory."""
     return directory / "stability.png"
 
 
@@ -55,7 +55,7 @@ def draw(rows: list[dict], kinds: list[str], title: str, directory: Path) -> Pat
         axes.set_xlabel("time step over the limit in brackets")
         axes.set_title(f"{title}: largest stable step", loc="left")
         axes.plot([], [], color=BLUE, linewidth=5, label="stable")
-        axes.plot([], [], color="black", linewidth=1.6, label="what the schemes take at most")
+        axes.plot([], [], color="black", linewidth=1.6, label="largest step that the schemes use")
         for name, marker in BREAKS.items():
             if any(row["broken"] == name for row in rows):
                 axes.plot([], [], marker=marker, color=VERMILION, linestyle="none", label=WRONG[name])

@@ -1,4 +1,4 @@
-"""When a run is unstable: not when it has become no number, but when its physics has become wrong."""
+"""Criteria for an unstable run: wrong physics, and not only values that are not finite."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .trial import Trace
 
 @dataclass(frozen=True)
 class Criteria:
-    """What is allowed. Each is a part of what the fine solution has of the same."""
+    """Allowed errors, each relative to a quantity of the fine solution."""
 
     energy: float = 0.01
     """energy created, over the largest change of kinetic or total energy"""
@@ -22,7 +22,7 @@ class Criteria:
     """root mean square distance of the particles, over their displacement"""
 
     def broken(self, case: Case, found: Trace, fine: Trace) -> str | None:
-        """Which criterion a run breaks first of guard, energy, momentum, distance; None if it is stable."""
+        """The first violated criterion of guard, energy, momentum, distance; None if the run is stable."""
         if found.stopped_by is not None or len(found.time) < len(fine.time):
             return "guard"
         if not np.isfinite(found.energy).all():
@@ -38,7 +38,7 @@ class Criteria:
 
 
 def distance(found: Trace, fine: Trace) -> float:
-    """Root mean square distance between two runs at its largest, over the largest displacement."""
+    """Largest RMS distance between two runs, relative to the largest displacement."""
     weight = fine.mass / fine.mass.sum()
     apart = np.sqrt(((found.position - fine.position) ** 2).sum(axis=2) @ weight)
     moved = np.sqrt(((fine.position - fine.position[0]) ** 2).sum(axis=2) @ weight)
@@ -46,12 +46,12 @@ def distance(found: Trace, fine: Trace) -> float:
 
 
 def _created(fine: Trace) -> float:
-    """Energy that even the finest steps create, such as USF does on average: not the fault of the step."""
+    """Energy that even the finest steps create, for example with USF; it does not depend on the step."""
     return max(float(fine.energy.max() - fine.energy[0]), 0.0)
 
 
 def _isolated(case: Case) -> bool:
-    """Whether nothing but gravity acts on the body from outside."""
+    """Whether gravity is the only external force on the body."""
     return case.space != "axisymmetric" and all(
         case.grid.faces.get(face, "open") in ("open", "periodic") for face in case.space_.faces
     )

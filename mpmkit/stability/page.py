@@ -1,4 +1,4 @@
-"""The page of a stability map: the figure, drawn into the page itself, and its table."""
+"""The page of a stability map: the figure, drawn as part of the page, and its table."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .figure import WRONG
 
 NAME = "index.html"
 LEAST, MOST = 0.04, 2.6
-"""Ends of the axis, in parts of the limit."""
+"""Ends of the axis, as fractions of the limit."""
 TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 ROW, BAR = 30, 12
 """Heights of a row and of its bar."""
@@ -36,8 +36,8 @@ def write_page(rows: list[dict], kinds: list[str], title: str, directory: Path) 
     path = directory / NAME
     page = assembled(
         f"{title}: largest stable step",
-        "Up to which time step each combination of schemes creates no energy and no momentum, and leads "
-        "where a fine solution leads.",
+        "The largest time step up to which each combination of schemes creates no energy and no momentum, "
+        "and gives the result of a fine solution.",
         [_map(rows, kinds, title), _table(rows, kinds, title)],
         f"Made by mpmkit {__version__}. It needs no network.",
     )
@@ -63,14 +63,14 @@ def _map(rows: list[dict], kinds: list[str], title: str) -> Section:
     )
     body = f'<div class="map">{drawn}</div>'
     body += note(
-        "A bar reaches to the largest step that was found stable, over the limit in brackets; the cross is "
-        "the smallest that was not. The line is the step that the schemes take at most."
+        "A bar ends at the largest stable step, relative to the limit in brackets. The cross is the smallest "
+        "unstable step. The line is the largest step that the schemes use."
     )
     return Section("map", "Map", body)
 
 
 def _across(part: float) -> float:
-    """Place along the axis, which is logarithmic."""
+    """Position along the logarithmic axis."""
     within = min(max(part, LEAST), MOST)
     return WIDTH * math.log(within / LEAST) / math.log(MOST / LEAST)
 
@@ -113,5 +113,5 @@ def _table(rows: list[dict], kinds: list[str], title: str) -> Section:
         )
         for row in rows
     ]
-    body = paragraph(f"{len(rows)} combinations; steps are parts of the limit.")
+    body = paragraph(f"{len(rows)} combinations; steps are fractions of the limit.")
     return Section("table", "Table", body + table(headings, cells, "Largest stable steps"))

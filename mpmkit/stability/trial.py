@@ -1,4 +1,4 @@
-"""A run with steps that nobody vouches for, and what is looked at on its way."""
+"""A run with steps that may be unstable, and its records."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from ..solver.grid import Grid
 from ..solver.simulation import Simulation
 
 ROWS = 40
-"""Times at which a trial is looked at."""
+"""Number of times at which a trial is recorded."""
 
 
 @dataclass(frozen=True)
 class Trace:
-    """What a trial did, at ``ROWS`` times from the start on; shorter where a guard stopped it."""
+    """Records of a trial at ``ROWS`` times from the start; fewer if a guard stopped it."""
 
     time: np.ndarray
-    """of the steps that end next to equal parts of the run: a step is never cut, since that may steady it"""
+    """s, of the steps nearest to equal parts of the run; steps are not shortened: that may stabilise them"""
     energy: np.ndarray
     """(rows,) kinetic, potential, elastic and compressive energy together, J"""
     kinetic: np.ndarray
     momentum: np.ndarray
     """(rows, dim) kg m/s"""
     position: np.ndarray
-    """(rows, n, dim) by the particles' numbers, m, at equal parts of the run, by the velocity of the step
-    next to them; along a periodic axis going on beyond the faces"""
+    """(rows, n, dim) positions by particle number, m, at equal parts of the run, extrapolated by the velocity
+    of the nearest step; along a periodic axis they continue beyond the faces"""
     mass: np.ndarray
     stopped_by: str | None
 
 
 def trace(case: Case, fraction: float) -> Trace:
-    """Run a case with ``fraction`` of the smallest limit that it does not ignore, whatever schemes bear."""
+    """Run a case with ``fraction`` of the smallest limit that it does not ignore, even if it is unstable."""
     if case.sinks:
         raise CaseError("stability follows every particle to the end: leave out sinks")
     simulation = Simulation(case, fraction=fraction)
-    simulation.guards.watches_energy = False  # the judge looks at it, and more closely
-    simulation.guards.watches_density = False  # which no shorter step keeps
+    simulation.guards.watches_energy = False  # the judge checks it more strictly
+    simulation.guards.watches_density = False  # its errors do not depend on the step
     rows, stopped_by = [], None
     with np.errstate(all="ignore"):
         try:
@@ -62,9 +62,9 @@ def trace(case: Case, fraction: float) -> Trace:
 
 
 def _diverged(simulation: Simulation) -> str | None:
-    """The guard that stops a run in which a plug-in failed; None if nothing but the plug-in is wrong.
+    """The guard that stops a run after a fault of a plug-in; None if only the plug-in is wrong.
 
-    A law need not bear what the steps have made of its particles.
+    A law may fail because the unstable steps have produced invalid particles.
     """
     try:
         simulation.check()
@@ -76,9 +76,9 @@ def _diverged(simulation: Simulation) -> str | None:
 
 
 def _unwrapped(position: np.ndarray, grid: Grid) -> np.ndarray:
-    """Where particles would be had they not come in again at the other of two periodic faces.
+    """Positions of particles without wrapping at periodic faces.
 
-    From row to row none may go further than half the period.
+    From row to row, no particle may move by more than half the period.
     """
     with np.errstate(all="ignore"):
         steps = np.diff(position, axis=0)

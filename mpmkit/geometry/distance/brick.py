@@ -50,7 +50,7 @@ class Brick(Solid):
 
 @dataclass(frozen=True)
 class BrickShell(Solid):
-    """What is between a box and one that is larger by the thickness at each of its closed faces.
+    """The region between a box and a larger box, which is larger by the thickness at each closed face.
 
     Outside, the nearest of the plates that close the faces is exact; inside, the nearer of the surfaces of
     the two boxes.

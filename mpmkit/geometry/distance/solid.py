@@ -1,4 +1,4 @@
-"""What every solid answers, and solids made of others."""
+"""The interface of all solids, and solids composed of others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Found = tuple[np.ndarray, np.ndarray]
 class Solid(ABC):
     """A set of points with a signed distance φ: above 0 outside, below 0 inside.
 
-    The gradient ∇φ is that of the nearest point of the surface. Where several are nearest it is that of one.
+    The gradient ∇φ is that at the nearest point of the surface; of several nearest points, one is used.
     """
 
     @abstractmethod
@@ -27,27 +27,26 @@ class Solid(ABC):
         the points; None if the surface has no end."""
 
     def parts(self, radial: bool) -> tuple[Solid, ...]:
-        """Solids that are together this one, where its surface has inner edges: each surface is smooth there.
+        """Solids whose union is this one, if its surface has inner edges: each has a smooth surface there.
 
         Args:
-            radial: whether the first coordinate is the radius; what is behind the axis is left out.
+            radial: whether the first coordinate is the radius; parts behind the axis are left out.
         """
         return (self,)
 
     def outsides(self, radial: bool) -> tuple[Solid, ...]:
-        """Solids that are together all of space around this one, see ``parts``: one for each face of a convex
-        one."""
+        """Solids whose union is the space around this one, see ``parts``; one per face of a convex solid."""
         return (Inverted(self),)
 
     def extent(self) -> float:
-        """Its least extent along an axis, m; infinite where it has no end."""
+        """Its least extent along an axis, m; infinite if it has no end."""
         found = self.hull()
         return np.inf if found is None else float(np.ptp(found[0], axis=0).min()) + 2 * found[1]
 
 
 @dataclass(frozen=True)
 class HalfSpace(Solid):
-    """φ = (x - point)·normal: all that is behind a plane. Both are (dim,), the normal of length 1."""
+    """φ = (x - point)·normal: the half-space behind a plane. Both are (dim,), the normal of length 1."""
 
     point: np.ndarray
     normal: np.ndarray
@@ -61,7 +60,7 @@ class HalfSpace(Solid):
 
 @dataclass(frozen=True)
 class Inverted(Solid):
-    """-φ: all of space around a solid."""
+    """-φ: the space around a solid."""
 
     solid: Solid
 
@@ -78,7 +77,7 @@ class Inverted(Solid):
 
 @dataclass(frozen=True)
 class Jointed(Solid):
-    """A solid whose parts are known. They overlap where they meet, and none ends in an inner edge."""
+    """A solid with known parts. Parts overlap where they meet, and none ends at an inner edge."""
 
     whole: Solid
     pieces: tuple[Solid, ...]
@@ -95,10 +94,10 @@ class Jointed(Solid):
 
 @dataclass(frozen=True)
 class Shell(Solid):
-    """|φ - t/2| - t/2: what is outside a solid and no farther from it than t, m, the thickness.
+    """|φ - t/2| - t/2: the points outside a solid within the thickness t, m.
 
-    The outer surface is rounded around the edges of the solid. φ of a point in the shell is exact as long as
-    the outer surface has no fold nearer to it than the thickness.
+    The outer surface is rounded around the edges of the solid. φ of a point in the shell is exact if the
+    outer surface has no fold closer to the point than the thickness.
     """
 
     solid: Solid

@@ -41,7 +41,7 @@ class SurfaceMesh(Solid):
         sign = np.where((outwards * normal).sum(axis=1) < 0, -1.0, 1.0)
         gradient = sign[:, None] * outwards
         on_it = length <= 1e-9 * float(np.ptp(self.vertices, axis=0).max())
-        gradient[on_it] = normal[on_it]  # too near for a direction
+        gradient[on_it] = normal[on_it]  # too close to the surface to compute a direction
         return sign * np.sqrt(square), gradient
 
     def hull(self) -> tuple[np.ndarray, float]:
@@ -77,8 +77,7 @@ class SurfaceMesh(Solid):
         )
 
     def _feature(self, face: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """Which of the pseudonormals belongs to a place on a face, (k,): 0 within it, 1 to 3 on an edge, 4 to
-        6 at a corner."""
+        """Index of the pseudonormal at a point of a face, (k,): 0 inside, 1-3 on an edge, 4-6 at a corner."""
         a, b, c = (self.vertices[self.faces[face, i]] for i in range(3))
         normal = np.cross(b - a, c - a)
         area = np.maximum((normal * normal).sum(axis=1), 1e-300)
