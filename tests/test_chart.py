@@ -147,7 +147,7 @@ def test_a_bad_file_is_one_sentence(dataset, tmp_path, text, sentence):
         (["--reference", "."], "--reference .: it cannot be read: Is a directory"),
         (["--reference", "nan"], "--reference nan: it must be finite and not 0"),
         (["--reference", "0"], "--reference 0: it must be finite and not 0"),
-        (["--variable", "t500", "--reference", "r.csv"], "'t500' is one number a member, and so must its"),
+        (["--variable", "t500", "--reference", "r.csv"], "'t500' is one number per member; it must be"),
         (
             ["--variable", "slump"],
             "no member that finished has a slump to compare with the finest member",

@@ -56,7 +56,7 @@ def test_the_final_spread_alone_says_nothing_of_the_viscosity():
     assert result.parameters[YIELD_STRESS].identifiable
     assert result.further[0].parameter == VISCOSITY
     assert result.further[0].left < 0.3
-    assert any("would tell most" in sentence for sentence in result.sentences)
+    assert any("most useful further measurement" in sentence for sentence in result.sentences)
 
 
 def test_both_come_from_the_final_spread_and_t500():
@@ -108,7 +108,7 @@ def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(of_a_curve, tmp_path)
     fit, _, straight, ran = of_a_curve
     first, rest = Pretend(), Pretend()
     cut = mpmkit.fit(fit.model_copy(update={"budget": Budget(runs=8)}), tmp_path / "out", executor=first)
-    assert any("budget was spent" in sentence for sentence in cut.sentences)
+    assert any("budget was used up" in sentence for sentence in cut.sentences)
     assert 6 <= len(first.ran) <= 8
     resumed = mpmkit.fit(fit, tmp_path / "out", executor=rest, overwrite=True)
     assert resumed.parameters == straight.parameters
@@ -194,12 +194,12 @@ def test_what_no_run_gives_is_refused():
         mpmkit.fit(a_fit([FINAL], narrow), executor=Pretend())
     assert str(refused.value) == (
         "tests.slump.measurements.0.value: no bodies.0.material.yield_stress from 20 to 60 gives a final "
-        "spread of 0.5533 m; 0.6645 m comes nearest, at the bound bodies.0.material.yield_stress = 60"
+        "spread of 0.5533 m; 0.6645 m is the nearest value, at the bound bodies.0.material.yield_stress = 60"
     )
 
 
 def test_a_budget_that_does_not_even_begin_is_refused():
-    with pytest.raises(CaseError, match="budget: it does not last for the first search"):
+    with pytest.raises(CaseError, match="budget: it is too small for the first search"):
         mpmkit.fit(a_fit([FINAL], budget={"runs": 1}), executor=Pretend())
 
 

@@ -57,7 +57,7 @@ BAD = {
         "low is 500 and high is 20; low must be below high",
     ),
     "no bounds": (parameter(YIELD_STRESS, low=20, high=20), "low and high are both 20"),
-    "log of zero": (parameter(YIELD_STRESS, low=0), "low is 0, which no logarithmic scale has"),
+    "log of zero": (parameter(YIELD_STRESS, low=0), "low is 0; on a logarithmic scale it must be above 0"),
     "unknown path": (
         parameter("bodies.0.material.yeld_stress"),
         "parameters.bodies.0.material.yeld_stress: tests.slump.stages.0 has no such place; "
@@ -67,7 +67,7 @@ BAD = {
     "no such body": (parameter("bodies.7.material.yield_stress"), "bodies is a list of 1"),
     "no number": (
         parameter("scheme.order.name"),
-        'it is "usl" in tests.slump.stages.0; what is sought must be',
+        'it is "usl" in tests.slump.stages.0; a parameter must be',
     ),
     "whole number": (parameter("bodies.0.particles_per_cell.0"), "it is a whole number"),
     "refused by the case": (
@@ -76,13 +76,13 @@ BAD = {
     ),
     "slump of more than the cone": (
         instead(variable="final_slump", value=0.31, uncertainty=0.002),
-        "measurements.0.value: nothing gives a slump of 310 mm from a body of 300 mm in test 'slump'",
+        "measurements.0.value: a slump of 310 mm is impossible from a body of 300 mm in test 'slump'",
     ),
     "height of more than the cone": (
         instead(variable="final_height", value=0.4, uncertainty=0.002),
-        "nothing gives a height of 400 mm from a body of 300 mm",
+        "a height of 400 mm is impossible from a body of 300 mm",
     ),
-    "spread below the first": (measurement(value=0.15), "no run gives a spread below the first one, 0.2 m"),
+    "spread below the first": (measurement(value=0.15), "it must be at least the spread at the start, 0.2 m"),
     "beyond the domain": (measurement(value=1.5), "the domain of the case ends at a spread of 1.2 m"),
     "millimetres": (measurement(value=560), "that looks like millimetres: write 0.56"),
     "millimetres of uncertainty": (measurement(uncertainty=6), "if it is in millimetres, write 0.006"),

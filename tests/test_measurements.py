@@ -101,7 +101,7 @@ def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
         ("height", "front()", "measurements has one called 'height'"),
         ("t500", "front()", "measurements has one called 't500'"),
         ("Tip", "front()", "measurements has one called 'Tip'"),
-        ("tip", "front(", "this is no formula"),
+        ("tip", "front(", "this is not a formula"),
     ],
 )
 def test_a_sentence_says_what_cannot_be_measured(name, formula, words):

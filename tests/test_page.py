@@ -112,7 +112,7 @@ def test_a_page_is_made_of_a_run_that_is_still_at_work(slump, tmp_path):
     for name in ("case.json", "history.nc", "flow.npz", "run.log"):
         (tmp_path / name).write_bytes((slump / name).read_bytes())
     page = page_of(tmp_path, live=True)
-    assert "The run is at work: t = 0.300 s of 0.300 s." in text_of(page)
+    assert "The run is in progress: t = 0.300 s of 0.300 s." in text_of(page)
     assert "connect-src 'self'" in page
     assert data_of(page)["flow"]["packing"]["moments"]
 
@@ -159,7 +159,7 @@ def test_a_run_that_a_guard_stopped_has_a_page_that_says_so(tmp_path, monkeypatc
         a_slump(tmp_path / "run")
     page = RunDirectory(tmp_path / "run").page.read_text(encoding="utf-8")
     assert "A guard stopped the run" in text_of(page)
-    assert "Final spread none the run did not come to a final shape" in text_of(page)
+    assert "Final spread none the material did not reach a final shape" in text_of(page)
     assert data_of(page)["flow"]["packing"]["moments"]
 
 

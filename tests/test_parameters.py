@@ -67,7 +67,7 @@ def test_a_formula_is_arithmetic(formula, value):
         ("sqrt(-1)", "-1 has no square root"),
         ("1e300 * 1e300", "it is too large for a number"),
         ("a if a else 2", "cannot stand in a formula"),
-        ("a +", "this is no formula"),
+        ("a +", "this is not a formula"),
         ("a" * (LONGEST + 1), f"at most {LONGEST} characters"),
         ("True", "cannot stand in a formula"),
     ],

@@ -69,7 +69,7 @@ def data_of(path) -> dict:
 
 def test_the_page_of_a_study_has_error_against_cost_and_a_linked_table(study):
     page = study.read_text(encoding="utf-8")
-    assert "2 of 3 members came to their end. 1 stopped before; the table says why." in page
+    assert "2 of 3 members finished. 1 stopped before the end; the table says why." in page
     assert re.findall(r'href="(members/[^"]*)"', page) == [f"members/order-{name}/" for name in ORDERS]
     assert "energy at 1 s" in page
     cost = data_of(study)["cost"]["charts"]["cost"]

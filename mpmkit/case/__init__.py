@@ -1,4 +1,4 @@
-"""Case files: what a scene is, how it is read, and what is said of a bad one."""
+"""Case files: their model, how they are read, and the messages about errors in them."""
 
 from .composed import case_model
 from .load import load_case, parse_case

@@ -1,4 +1,4 @@
-"""What a JSON Schema allows at one place of a case, in words."""
+"""The values that a JSON Schema allows at one place of a case, in words."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ BOUNDS = {
     "maximum": "at most",
 }
 LONGEST = 60
-"""Characters of a value that are shown."""
+"""Most characters of a value that are shown."""
 
 
 class Place:
-    """The alternatives that a schema has at one place of a document, as far as the document leaves them open.
+    """The alternatives of a schema at one place of a document that agree with the rest of the document.
 
     Args:
         schema: the whole JSON Schema.
-        document: what it is to describe.
-        path: keys and indices from the root of the document; the last ones need not be there.
+        document: the document that the schema describes.
+        path: keys and indices from the root of the document; the last ones need not exist.
     """
 
     def __init__(self, schema: Node, document: Any, path: Iterable[str | int] = ()) -> None:
@@ -34,7 +34,7 @@ class Place:
         self._document = document
         self.nodes = self._alternatives(schema)
         self.unit: str | None = None
-        """Unit of the quantity that the place is, or is an entry of."""
+        """Unit of the quantity at this place, or of the quantity that contains it."""
         for key in path:
             self._descend(key)
 
@@ -43,15 +43,15 @@ class Place:
         return list(dict.fromkeys(key for node in self._meant() for key in node.get("properties", {})))
 
     def choices(self) -> list[Any]:
-        """Values of which one must stand here."""
+        """The allowed constant values here."""
         return [value for node in self.nodes for value in _constants(node)]
 
     def takes_numbers(self) -> bool:
-        """Whether a number may stand here."""
+        """Whether a number is allowed here."""
         return any(node.get("type") in ("number", "integer") for node in self.nodes)
 
     def selector(self) -> tuple[str, list[Any]] | None:
-        """The key whose value says which of several objects is meant, and its values."""
+        """The key whose value selects one of several objects, and its values."""
         objects = [node["properties"] for node in self.nodes if "properties" in node]
         for key in objects[0] if objects else ():
             values = [value for node in objects for value in _constants(node.get(key, {}))]
@@ -75,7 +75,7 @@ class Place:
         return ", or ".join(parts) or "something else"
 
     def written_out(self, value: Any) -> str | None:
-        """The object of which ``value`` is a constant, with all that must stand in it; None without one."""
+        """The object that contains the constant ``value``, with its required keys; None if there is none."""
         for node in self.nodes:
             properties = node.get("properties", {})
             named = [key for key, rule in properties.items() if "const" in rule and rule["const"] == value]
@@ -86,7 +86,7 @@ class Place:
         return None
 
     def _object(self) -> str:
-        """The keys of an object, those that must stand there first."""
+        """The keys of an object, the required ones first."""
         objects = [node for node in self._meant() if "properties" in node]
         needed = [key for key in self.keys() if all(key in node.get("required", []) for node in objects)]
         others = [key for key in self.keys() if key not in needed]
@@ -160,7 +160,7 @@ class Place:
 
 
 def shown(value: Any) -> str:
-    """A value as it stands in the file, shortened."""
+    """A value as in the file, shortened."""
     try:
         text = json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError, RecursionError):
@@ -169,7 +169,7 @@ def shown(value: Any) -> str:
 
 
 def one_of(values: list[Any]) -> str:
-    """``"a", "b" or "c"``, as they would stand in the file."""
+    """``"a", "b" or "c"``, written as in the file."""
     return _listed([json.dumps(value, ensure_ascii=False) for value in values], "or")
 
 

@@ -8,10 +8,10 @@ from pydantic import BaseModel, ConfigDict
 
 
 class Model(BaseModel):
-    """Base of the case's own models: strict, finite, and no key that is not known."""
+    """Base of the case's own models: strict types, finite numbers, and only known keys."""
 
     def __eq__(self, other: Any) -> bool:
-        """Whether the fields are equal; what was computed from them and kept does not count."""
+        """Whether the fields are equal; cached values do not count."""
         return type(self) is type(other) and all(
             getattr(self, name) == getattr(other, name) for name in type(self).model_fields
         )

@@ -1,6 +1,6 @@
-"""The model of case files, composed of the case's own fields and the plug-ins that are registered.
+"""The model of case files, composed of the case's own fields and the registered plug-ins.
 
-A third party's parameters are validated, documented and completed in an editor exactly as the built-in ones.
+Parameters of third-party plug-ins are validated, documented and completed in editors like the built-in ones.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from .output import OutputSettings
 
 
 class CheckedCase(Case):
-    """A case whose fields fit together."""
+    """A case whose fields are consistent."""
 
     registry: ClassVar[Registry]
-    """Plug-ins that it was composed of."""
+    """Plug-ins that it was composed from."""
 
     @model_validator(mode="after")
     def _fits_together(self, info: ValidationInfo) -> CheckedCase:
@@ -42,11 +42,11 @@ class CheckedCase(Case):
         return self
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """The view of the case in a notebook."""
         return case_html(self)
 
     def __reduce__(self) -> tuple:
-        """So that a case can go to another process: its class is made anew there, of the plug-ins."""
+        """Support for pickling: in another process, the class is made again from the plug-ins."""
         known = self.registry is installed()
         return _unpickled, (self.model_dump_json(), None if known else self.registry)
 
@@ -59,7 +59,7 @@ def _unpickled(text: str, registry: Registry | None) -> Case:
 
 
 def _one_of(kind: str, members: dict[str, type], key: str) -> Any:
-    """Annotation of a field that holds a plug-in of a kind; the constant at ``key`` says which of them."""
+    """Annotation of a field that holds a plug-in of a kind; the constant at ``key`` selects it."""
 
     def tag(value: Any) -> Any:
         if isinstance(value, dict):
@@ -68,7 +68,7 @@ def _one_of(kind: str, members: dict[str, type], key: str) -> Any:
             return value.name
         return value if isinstance(value, str) else getattr(value, key, None)
 
-    if not members:  # every one of them is broken or refused: only a case that is read fails of it
+    if not members:  # all are broken or refused: report it only when a case is read
         return _none_of(kind)
     return Annotated[
         reduce(or_, [Annotated[cls, Tag(name)] for name, cls in members.items()]), Discriminator(tag)
@@ -93,12 +93,12 @@ def _choice(registry: Registry, kind: str, default: str, meaning: str) -> tuple[
 
 
 def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
-    """Annotation and field of a plug-in which says its name at ``kind``, and has no default."""
+    """Annotation and field of a plug-in whose name is given at ``kind``, without a default."""
     return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
 
 
 def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
-    """Annotation of a field that holds plug-ins by names of the user's."""
+    """Annotation of a field that holds plug-ins under names chosen by the user."""
     return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
 
 

@@ -1,6 +1,6 @@
 """Rules of a case that span several fields.
 
-Each is broken with one sentence that names the field, the value, and what is allowed.
+Each violation gives one sentence with the field, the value, and the allowed values.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ from .walls import NAME, check_walls
 from .whole_cells import WHOLE, cells_along, extend_domain
 
 MOST_CELLS = 2**30
-"""Cells along an axis: the first node of a particle is a 32-bit integer."""
+"""Most cells along an axis: the first node of a particle is a 32-bit integer."""
 MOST_SPEED = 1e12
-"""m/s; faster than any wave, and slow enough for the step to be a number."""
+"""m/s; faster than any real wave, and slow enough for a positive time step."""
 MOST_OUTPUTS = 100_000
-"""Rows of a history, or frames, that a run may be asked for."""
+"""Most rows of a history, or frames, of a run."""
 
 
 def check(case: Case) -> None:
-    """Raise ValueError with one sentence for the first rule that is broken.
+    """Raise ValueError with one sentence for the first violated rule.
 
-    Pydantic takes every ValueError for the user's: what a plug-in raises must not reach it as one.
+    Pydantic treats every ValueError as an input error: exceptions of plug-ins must not reach it as
+    ValueError.
     """
     _check_vector("gravity", case.gravity, case)
     if case.space_.radial and case.gravity_vector[0] != 0:
@@ -80,7 +81,7 @@ def _check_sinks(case: Case) -> None:
 
 
 def _check_measured(case: Case) -> None:
-    """Diagnostics fit the scene, and fields have names of their own."""
+    """Check that diagnostics fit the scene, and that names of fields are unique."""
     for what in ("diagnostics", "fields"):
         for name in getattr(case.output, what):
             if not NAME.fullmatch(name):
@@ -110,7 +111,7 @@ def _check_until(case: Case) -> None:
                 f"did you mean '{near}'?" if near else f"it may have at_most, rest, and {', '.join(scalars)}"
             )
             raise ValueError(
-                f"until has the key '{name}', which is no scalar variable of the history; {hint}"
+                f"until has the key '{name}', which is not a scalar variable of the history; {hint}"
             )
 
 
@@ -241,7 +242,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
 
 
 def _check_wave_speed(field: str, material: Material, case: Case) -> None:
-    """Parameters that are numbers each may make a wave speed that is not finite, and a step of zero."""
+    """Check the wave speeds: finite parameters can still give an infinite wave speed and a step of zero."""
     law, sound_speed = material.constitutive_law, case.sound_speed(material)
     with blaming_plugins([("law", law)]):
         try:
@@ -260,7 +261,7 @@ def _check_wave_speed(field: str, material: Material, case: Case) -> None:
 
 
 def _check_time_step(case: Case) -> None:
-    """Something must limit the step: the waves of the materials, or else their viscosity."""
+    """Check that the step has a limit: the waves of the materials, or else their viscosity."""
     ignored = case.scheme.time_step.ignore
     laws = [body.material.constitutive_law for body in case.bodies]
     with blaming_plugins([("law", law) for law in laws]):

@@ -15,10 +15,10 @@ NAME = re.compile(r"[a-z0-9_]+")
 
 
 def columns_of(diagnostic: Diagnostic, space: Space) -> list[Column]:
-    """What a diagnostic measures.
+    """The columns of a diagnostic.
 
     Raises:
-        PluginFault: it is no list of columns with names of their own.
+        PluginFault: it is not a list of columns with unique names.
     """
     columns = diagnostic.columns(space)
     if not isinstance(columns, list | tuple) or not all(isinstance(column, Column) for column in columns):
@@ -30,7 +30,9 @@ def columns_of(diagnostic: Diagnostic, space: Space) -> list[Column]:
         if column.name in [other.name for other in columns[:number]]:
             raise PluginFault(diagnostic, f"has two columns of the name '{column.name}'")
         if not isinstance(column.unit, str) or not isinstance(column.long_name, str):
-            raise PluginFault(diagnostic, f"has a column '{column.name}' whose unit or long_name is no text")
+            raise PluginFault(
+                diagnostic, f"has a column '{column.name}' whose unit or long_name is not a text"
+            )
     return list(columns)
 
 

@@ -7,7 +7,7 @@ from .model import Case
 
 
 def drain_columns(case: Case) -> list[Variable]:
-    """What all sinks have taken, and what each has taken and takes."""
+    """Mass removed by all sinks, and mass and rate of each sink."""
     if not case.sinks:
         return []
     of_sinks = {"dimension": "sink", "labels": tuple(case.sinks)}

@@ -1,4 +1,4 @@
-"""When a run ends: at a time, or before it, at rest or where a variable of the history is far enough."""
+"""The end of a run: at a time, or earlier, at rest or when a variable of the history reaches a bound."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .base import Model
 
 
 class Bounds(Model):
-    """What a variable of the history has to come to."""
+    """Bounds for a variable of the history that end the run."""
 
     at_least: float | None = quantity("unit of the variable", "the variable is this or more", default=None)
     at_most: float | None = quantity("unit of the variable", "the variable is this or less", default=None)
@@ -27,7 +27,7 @@ class Bounds(Model):
         return self
 
     def hold(self, value: float) -> bool:
-        """Whether a value is within the bounds; what is not a number never is."""
+        """Whether a value is within the bounds; NaN never is."""
         low = self.at_least is None or value >= self.at_least
         return low and (self.at_most is None or value <= self.at_most)
 
@@ -39,8 +39,8 @@ class Bounds(Model):
 
 
 class Until(Model):
-    """The run ends as soon as one of these is so: it is at rest, a variable of the history is within its
-    bounds, or the time ``at_most`` has come. Each other key is the name of a variable of the history."""
+    """The run ends as soon as the material is at rest, a variable of the history is within its bounds, or the
+    time ``at_most`` is reached. Each other key is the name of a variable of the history."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Bounds]
@@ -53,17 +53,17 @@ class Until(Model):
 
     @property
     def variables(self) -> dict[str, Bounds]:
-        """What the variables of the history have to come to."""
+        """Bounds for variables of the history that end the run."""
         return self.__pydantic_extra__ or {}
 
     @property
     def conditions(self) -> list[str]:
-        """What ends the run before ``at_most``, in words."""
+        """The conditions that end the run before ``at_most``, in words."""
         rest = ["the material is at rest"] if self.rest else []
         return rest + [f"{name} is {bounds.words}" for name, bounds in self.variables.items()]
 
 
-# No tag is the name of a key: in the path of an error the two must not be taken for each other.
+# Tags differ from all names of keys, so that the path of an error is clear.
 AnyUntil = Annotated[
     Annotated[float, Field(gt=0), Tag("a-time")] | Annotated[Until, Tag("on-conditions")],
     Discriminator(lambda value: "on-conditions" if isinstance(value, dict | Until) else "a-time"),
@@ -78,11 +78,11 @@ def latest(until: Any) -> float:
 
 
 def conditions(until: float | Until) -> list[str]:
-    """What may end a run before its latest end, in words; nothing where it ends at a time."""
+    """The conditions that may end a run early, in words; empty if it ends at a time."""
     return until.conditions if isinstance(until, Until) else []
 
 
 def ending(until: float | Until) -> str | None:
-    """What ends a run, in one sentence; None where it is a time alone."""
+    """A sentence about the end of a run; None if it ends only at a time."""
     earlier = " or ".join(conditions(until))
     return f"the run ends when {earlier}, at the latest at t = {latest(until):g} s" if earlier else None

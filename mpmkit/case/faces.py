@@ -1,4 +1,4 @@
-"""The condition on a face of the grid, and what to write for an object that is not one."""
+"""The condition on a face of the grid, and help for values that are not valid conditions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Friction(Model):
 
 
 class Stick(Model):
-    """A wall to which material sticks, and which ``releases`` it or not where it would have to pull."""
+    """A wall to which material sticks; with ``releases`` it lets go of material instead of pulling it."""
 
     kind: Literal["stick"]
     releases: bool = Field(
@@ -35,7 +35,7 @@ NAMES = list(get_args(FaceName))
 
 
 def _written_as_it_must_be(value: Any) -> Any:
-    """The value itself; an object that is no wall with parameters is refused with what to write instead."""
+    """The value itself; an object that is not a valid condition is refused with the correct form."""
     if not isinstance(value, dict) or value.get("kind") == "friction":
         return value
     if value.get("kind") == "stick" and len(value) > 1:
@@ -51,7 +51,9 @@ def _written_as_it_must_be(value: Any) -> Any:
     if named != "friction":
         raise ValueError(_sentence(value, json.dumps(named)))
     if not any(nearest(key, ["friction", "coefficient"]) for key in value):
-        raise ValueError(f"{shown(value)} is no face; it must be {one_of(NAMES)}, or {_friction(None)}")
+        raise ValueError(
+            f"{shown(value)} is not a face condition; it must be {one_of(NAMES)}, or {_friction(None)}"
+        )
     raise ValueError(_sentence(value, _friction(value)))
 
 
@@ -60,14 +62,14 @@ def _sentence(value: Any, right: str) -> str:
 
 
 def _friction(value: Any) -> str:
-    """The object of a friction wall, with the coefficient that stands somewhere in a value."""
+    """The object of a friction wall, with the coefficient found in a value."""
     while isinstance(value, dict):
         value = next((v for v in value.values() if not isinstance(v, str | bool | list | None)), None)
     return f'{{"kind": "friction", "coefficient": {"…" if value is None else json.dumps(value)}}}'
 
 
 def _face_tag(value: Any) -> str:
-    # No tag is the name of a key: in the path of an error the two must not be taken for each other.
+    # Tags differ from all names of keys, so that the path of an error is clear.
     if isinstance(value, str):
         return "by-name"
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)

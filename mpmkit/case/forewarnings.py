@@ -1,6 +1,6 @@
-"""What a scene is known to do wrong, or to lose, before it is run: each is one sentence.
+"""Known problems of a scene, reported before the run: one sentence each.
 
-Plug-ins say for themselves what fails (``Plugin.cautions``); here is what follows from bodies, walls and
+Plug-ins report their own problems (``Plugin.cautions``); this module reports those of bodies, walls and
 gravity.
 """
 
@@ -19,21 +19,21 @@ from .walls import wall_between
 
 CLOSED = ("slip", "stick", "symmetry")
 PULLING = ("symmetry",)
-"""Faces that hold the normal velocity of what is at them, whether it presses on them or leaves."""
+"""Faces that fix the normal velocity of material at them, whether it presses or leaves."""
 MOST = 5
-"""Sentences of one kind: of a hundred drops, five pairs say all."""
+"""Most sentences of one kind; for a hundred drops, five pairs are enough."""
 CONTIGUOUS = 1e-6
-"""Gap, cells, up to which two pieces of a solid are one body; a wider one is meant to be open."""
+"""Largest gap, in cells, between two pieces of one solid; a wider gap is intended to be open."""
 ENOUGH_IN_3D = 27
-"""Particles a cell, see docs/stability/long_shear.md."""
+"""Particles per cell, see docs/stability/long_shear.md."""
 NOTICED = 0.1
-"""Part of gravity, away from a wall, that is worth a word."""
+"""Least part of gravity directed away from a wall that gives a sentence."""
 
 
 def forewarnings(case: Case) -> list[str]:
-    """A sentence for each thing that the scene is known to do wrong, and each value that cannot be meant."""
+    """A sentence for each known problem of the scene, and for each implausible value."""
     kinds = (_falls_out, _hangs, _swings_off, _touching, _few_particles, _needless, implausible)
-    with np.errstate(all="ignore"):  # a case may have numbers whose products are beyond any
+    with np.errstate(all="ignore"):  # products of the numbers of a case may overflow
         return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
 
 
@@ -41,7 +41,7 @@ def forewarnings(case: Case) -> list[str]:
 
 
 def _few_particles(case: Case) -> Iterator[str]:
-    """Fluids in three dimensions with fewer particles a cell than keep their yield stress in disorder."""
+    """3-D fluids with too few particles per cell to keep their yield stress when particles are disordered."""
     if case.space_.dim < 3 or not case.scheme.redistribution.equal_boxes:
         return
     for number, body in enumerate(case.bodies):
@@ -55,7 +55,7 @@ def _few_particles(case: Case) -> Iterator[str]:
 
 
 def _needless(case: Case) -> Iterator[str]:
-    """What a redistribution that keeps boxes of equal sides takes the place of."""
+    """Settings without effect because a redistribution keeps boxes of equal sides."""
     scheme = case.scheme
     if not scheme.redistribution.equal_boxes:
         return
@@ -72,7 +72,7 @@ def _needless(case: Case) -> Iterator[str]:
 
 
 def _falls_out(case: Case) -> Iterator[str]:
-    """Bodies that nothing holds over an open face, to which gravity draws them before the end."""
+    """Bodies without support that gravity moves to an open face before the end."""
     g = case.gravity_vector
     if not g.any():
         return
@@ -105,7 +105,7 @@ def _falls_out(case: Case) -> Iterator[str]:
 
 
 def _is_a_sink(case: Case, axis: int, upper: bool) -> bool:
-    """Whether a sink takes what is beyond the middle of a face."""
+    """Whether a sink takes material at the middle of a face."""
     lower_end, upper_end = case.domain_bounds
     beyond = (lower_end + upper_end) / 2
     beyond[axis] = upper_end[axis] + case.grid.cell_size if upper else lower_end[axis] - case.grid.cell_size
@@ -114,7 +114,7 @@ def _is_a_sink(case: Case, axis: int, upper: bool) -> bool:
 
 
 def _hangs(case: Case) -> Iterator[str]:
-    """Bodies that leave a symmetry face by gravity or by their own motion, and are held there."""
+    """Bodies that gravity or their own motion would move away from a symmetry face, which holds them."""
     g = case.gravity_vector
     for axis in range(case.space_.dim):
         for upwards in (False, True):
@@ -137,7 +137,7 @@ def _hangs(case: Case) -> Iterator[str]:
 
 
 def _swings_off(case: Case) -> Iterator[str]:
-    """Bodies that a standing wave draws from a slip wall, which does not pull, and no weight keeps on it."""
+    """Bodies that a standing wave moves away from a slip wall, which does not pull, without weight on it."""
     for number, body in enumerate(case.bodies):
         fluid = body.material.constitutive_law.uses_equation_of_state
         if body.velocity is None or isinstance(body.velocity, list) or (fluid and case.gravity_vector.any()):
@@ -157,7 +157,7 @@ def _swings_off(case: Case) -> Iterator[str]:
 
 
 def _touching(case: Case) -> Iterator[str]:
-    """Pairs of bodies that touch, or come to, and are more than two pieces of one."""
+    """Pairs of bodies that touch or will touch, and are not two pieces of one body."""
     materials: list[Material] = []
     for body in case.bodies:
         if body.material not in materials:
@@ -203,7 +203,7 @@ def _meet(case: Case, a: Body, b: Body) -> bool:
 
 
 def _gap(case: Case, a: Body, b: Body, shift: np.ndarray | None = None) -> float:
-    """Distance, m, of the boxes around two bodies, of which the second is drawn out by ``shift``."""
+    """Distance, m, of the boxes around two bodies, with the second box extended by ``shift``."""
     (low_a, high_a), (low_b, high_b) = _bounds(case, a), _bounds(case, b)
     shift = np.zeros(case.space_.dim) if shift is None else shift
     low_b, high_b = low_b + np.minimum(shift, 0), high_b + np.maximum(shift, 0)
@@ -235,7 +235,7 @@ def _is_held(case: Case, body: Body, axis: int) -> bool:
 
 
 def _has_a_wall_below(case: Case, body: Body, axis: int) -> bool:
-    """Whether something of a wall is between a body and the face to which gravity draws it."""
+    """Whether a part of a wall is between a body and the face in the direction of gravity."""
     if not case.walls:
         return False
     (lower, upper), (least, most) = _bounds(case, body), case.domain_bounds
@@ -263,6 +263,6 @@ def _bounds(case: Case, body: Body) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _velocity(case: Case, body: Body) -> np.ndarray:
-    """The uniform initial velocity of a body, m/s; zero for a standing wave, whose mean it is not."""
+    """The uniform initial velocity of a body, m/s; zero for a standing wave."""
     uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * case.space_.dim
     return np.array(uniform, dtype=float)

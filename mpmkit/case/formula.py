@@ -1,7 +1,7 @@
 """Formulas of a case: arithmetic over names, such as ``2 * radius + max(cell, 0.01)``.
 
-Python's own parser reads a formula, and only what is listed here is computed; nothing else of Python can be
-reached. There are no powers, so that no short formula takes long or makes a number without an end.
+Python's parser reads a formula, but only the operations listed here are computed; nothing else of Python can
+be reached. Powers are not allowed, so that no short formula takes long or makes a huge number.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from typing import Any
 from .synonyms import nearest
 
 LONGEST = 300
-"""Characters of a formula."""
+"""Most characters of a formula."""
 ROUNDING = 1e-9
-"""Part of a number by which it may be above a whole one and still count as that."""
+"""Relative excess of a number over a whole number that counts as rounding."""
 OPERATIONS: dict[type, Callable] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -47,7 +47,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": min,
     "max": max,
     "sqrt": _root,
-    "ceil": _ceil,  # of a length in cells: a domain is a whole number of them
+    "ceil": _ceil,  # for lengths in cells: a domain is a whole number of cells
     "sin": math.sin,
     "cos": math.cos,
     "tan": math.tan,
@@ -62,7 +62,7 @@ def parse(text: str) -> Node:
     """The tree of a formula.
 
     Raises:
-        ValueError: it is none; the words follow the formula in a sentence.
+        ValueError: it is not a formula; the message continues a sentence after the formula.
     """
     if len(text) > LONGEST:
         raise ValueError(f"a formula has at most {LONGEST} characters, and this one {len(text)}")
@@ -70,19 +70,19 @@ def parse(text: str) -> Node:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         raise ValueError(
-            "this is no formula; it must be made of numbers, names, + - * / ( ) and functions"
+            "this is not a formula; it must be made of numbers, names, + - * / ( ) and functions"
         ) from None
 
 
 def evaluate(
     node: Node, names: Mapping[str, float], functions: Mapping[str, Callable[..., float]] = FUNCTIONS
 ) -> float:
-    """The number that a formula is, for the names and the functions that are given.
+    """The value of a formula for the given names and functions.
 
     An argument of a function may be a name in quotes, as of a wall: ``force('plate', 'z')``.
 
     Raises:
-        ValueError: it has no number; the words follow the formula in a sentence.
+        ValueError: it has no value; the message continues a sentence after the formula.
     """
     match node:
         case ast.Constant(value=bool()):

@@ -1,4 +1,4 @@
-"""A case as a notebook shows it: a table beside a picture."""
+"""The view of a case in a notebook: a table beside a picture."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ LEFT = 'style="text-align: left"'
 
 
 def case_html(case: Case) -> str:
-    """The case as HTML. What cannot be drawn is left out of the picture: a notebook shows the rest."""
+    """The case as HTML. If the picture cannot be drawn, a notebook shows the rest."""
     try:
         drawn = picture(case)
-    except Exception:  # a mesh without the packages that it needs, or a plug-in's own
+    except Exception:  # e.g. a mesh without the needed packages, or a fault of a plug-in
         drawn = ""
     rows = "".join(
         f"<tr><th {LEFT}>{escape(name)}</th><td {LEFT}>{escape(value)}</td></tr>"
@@ -65,7 +65,7 @@ def _named(model: BaseModel, key: str) -> str:
 
 
 def _material(material: BaseModel) -> str:
-    """A law with its parameters and their units; what it leaves to a default is not shown."""
+    """A law with its parameters and their units; parameters at their defaults are not shown."""
     found = [str(getattr(material, "law", ""))]
     for name, field in type(material).model_fields.items():
         value, extra = getattr(material, name), field.json_schema_extra

@@ -1,4 +1,4 @@
-"""Why a text is not JSON, in words for those who write it by hand.
+"""Why a text is not valid JSON, in words for people who write it by hand.
 
 Python's reader says where it stopped, and "Expecting property name enclosed in double quotes" for nearly all.
 """
@@ -16,7 +16,7 @@ NEEDED = (
     "and a comma between two entries"
 )
 LONGEST = 40
-"""Characters of the text that are shown."""
+"""Most characters of the text that are shown."""
 
 
 def mistake(text: str, error: json.JSONDecodeError) -> str:

@@ -1,4 +1,4 @@
-"""Reading case files: strict JSON, overrides from the command line, and one sentence for what is wrong."""
+"""Reading case files: strict JSON, overrides from the command line, and one sentence for an error."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .parameters import expand, refuse_unused
 from .strict_json import NESTED, decode, require_finite
 
 LARGEST = 100_000_000
-"""Characters of a file that are read: a device such as /dev/zero has no end."""
+"""Most characters of a file that are read: a device such as /dev/zero has no end."""
 
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
@@ -57,10 +57,10 @@ def parse_case(
         raise CaseError(f"{source}: a case must be a JSON object, not {shown(data)}")
     model = case_model(registry)
     try:
-        require_finite(data)  # of Python's, that is: a file has been through this
+        require_finite(data)  # for Python objects; numbers of a file are already checked
         refuse_unused(data, source)
         data = expand(apply_overrides(data, overrides), source)
-        data.pop("$schema", None)  # by which an editor finds the schema; it says nothing of the scene
+        data.pop("$schema", None)  # for editors; it is not part of the scene
         text = json.dumps(data, allow_nan=False)
         with blaming_plugins(registry.all()):
             return model.model_validate_json(text)
@@ -68,15 +68,15 @@ def parse_case(
         raise CaseError(f"{source}: {explain(error, data, model, registry)}") from None
     except RecursionError:
         raise CaseError(f"{source}: {NESTED}") from None
-    except (TypeError, ValueError) as error:  # of json.dumps, for what Python can say and JSON cannot
+    except (TypeError, ValueError) as error:  # of json.dumps, for Python objects that JSON cannot represent
         raise CaseError(f"{source}: {error}") from None
 
 
 def read_case(path: str | Path) -> dict[str, Any]:
-    """The content of a case file, not validated yet, with a name, and with paths that hold anywhere.
+    """The content of a case file before validation, with a name and absolute paths.
 
     Raises:
-        CaseError: it cannot be read, see ``read_json``, or is no object.
+        CaseError: it cannot be read, see ``read_json``, or is not an object.
     """
     data = read_json(path)
     if not isinstance(data, dict):
@@ -87,7 +87,7 @@ def read_case(path: str | Path) -> dict[str, Any]:
 
 
 def count_from(folder: Path, data: dict[str, Any]) -> None:
-    """Make the relative paths of the files that a case names absolute; what is no such path is left alone."""
+    """Make relative paths of files in a case absolute; other values are not changed."""
     bodies, walls = data.get("bodies"), data.get("walls")
     places = list(bodies) if isinstance(bodies, list) else []
     for wall in walls.values() if isinstance(walls, dict) else []:
@@ -113,7 +113,7 @@ def read_json(path: str | Path, what: str = "case") -> Any:
             text = file.read(LARGEST + 1)
     except UnicodeDecodeError:
         raise CaseError(f"{path}: the {what} file is not a UTF-8 text file") from None
-    except (OSError, ValueError) as error:  # ValueError: a path that no file can have
+    except (OSError, ValueError) as error:  # ValueError: an impossible path
         reason = getattr(error, "strerror", None) or str(error)
         raise CaseError(
             f"{shown(str(path))}: the {what} file cannot be read: {reason}{_instead(path, error)}"
@@ -131,7 +131,7 @@ def read_json(path: str | Path, what: str = "case") -> Any:
 
 
 def _instead(path: str | Path, error: Exception) -> str:
-    """What to read in place of a file that is not there, or of a directory."""
+    """A hint what to read instead of a missing file or of a directory."""
     if isinstance(error, IsADirectoryError):
         inside = Path(path) / "case.json"
         return f"; the case of the run in it is '{inside}'" if inside.is_file() else ""

@@ -1,4 +1,4 @@
-"""The rules of what a case measures."""
+"""The rules for measurements of a case."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def check_measurements(case: Case) -> None:
-    """Raise ValueError with one sentence for the first measurement that cannot be taken.
+    """Raise ValueError with one sentence for the first measurement that is not valid.
 
-    Every formula is evaluated once with numbers that stand for a scene.
+    Every formula is evaluated once with test numbers instead of a scene.
     """
     axes = case.space_.axes
     walls = {*case.walls, *(name for name, kind in case.grid.faces.items() if _is_wall(kind))}
@@ -55,7 +55,7 @@ def check_measurements(case: Case) -> None:
 
 
 class _Numbers(dict[str, float]):
-    """Stand for a scene: different numbers, so that differences are not zero."""
+    """Test numbers instead of a scene; all differ, so that differences are not zero."""
 
     def __init__(self) -> None:
         super().__init__({name: 1.0 + math.sqrt(2 + place) for place, name in enumerate(NAMES)})

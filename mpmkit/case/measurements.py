@@ -57,7 +57,7 @@ TAKEN = (
     "plugins",
     "units",
 )
-"""Other names of the history and the summary, which a measurement cannot have either."""
+"""Other names of the history and the summary, which a measurement must not have."""
 
 
 class Measurement(Model):
@@ -82,10 +82,10 @@ def functions(depth: Callable, front: Callable, force: Callable, torque: Callabl
 def measured(
     measurements: Mapping[str, Measurement], names: Mapping[str, float], looks: Functions
 ) -> dict[str, float]:
-    """The value of each measurement, in its unit; one that has none at present, such as 0/0, is not a number.
+    """The value of each measurement, in its unit; NaN if it has no value at present, such as 0/0.
 
     Raises:
-        ValueError: a formula cannot be one; the words name the measurement.
+        ValueError: a formula is not valid; the message names the measurement.
     """
     found: dict[str, float] = {}
     for name, measurement in measurements.items():

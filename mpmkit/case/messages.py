@@ -1,8 +1,7 @@
-"""From pydantic's errors to one sentence a person can act on: the field, the value, and what is allowed.
+"""Pydantic's errors as one clear sentence: the field, the value, and what is allowed.
 
-Pydantic only says where something is wrong. What is allowed there is read from the JSON Schema of the case,
-so that a third party's parameters are explained as well as the case's own, and none of pydantic's wording
-gets out.
+Pydantic only gives the place of an error. The allowed values come from the JSON Schema of the case, so that
+parameters of third-party plug-ins are explained like the case's own, and no wording of pydantic is shown.
 """
 
 from __future__ import annotations
@@ -22,11 +21,11 @@ from .strict_json import NESTED
 from .synonyms import meant, nearest
 
 PYDANTICS_OWN = set(get_args(core_schema.ErrorType)) - {"value_error", "assertion_error"}
-"""Kinds of error whose text is pydantic's; the others carry the sentence of a validator."""
+"""Kinds of errors with a text of pydantic; the others contain the sentence of a validator."""
 TAG_ERRORS = ("union_tag_invalid", "union_tag_not_found")
 
 MOST_EXAMINED = 100
-"""Unknown keys of which each is compared with those that are missing."""
+"""Most unknown keys that are compared with the missing ones."""
 
 MEASURED = {"diagnostics": "diagnostic", "fields": "particle_field"}
 """Kinds of the plug-ins of ``output``, by their keys."""
@@ -46,7 +45,7 @@ class Complaint(NamedTuple):
 def explain(
     error: ValidationError, data: Any, model: type[BaseModel], registry: Registry, what: str = "case"
 ) -> str:
-    """The first error as a sentence, and how many more there are; ``what`` is what ``data`` is."""
+    """The first error as a sentence, and the number of further errors; ``what`` says what ``data`` is."""
     schema = _schema(model)
     complaints = _distinct([_complaint(item, data) for item in error.errors(include_url=False)])
     unknown = [complaint for complaint in complaints if complaint.kind == "extra_forbidden"]
@@ -71,9 +70,9 @@ def _schema(model: type[BaseModel]) -> dict:
 
 
 def _complaint(item: Any, data: Any) -> Complaint:
-    """The error, its location cleared of the tags that pydantic puts in for the members of unions.
+    """The error, with the tags that pydantic adds for members of unions removed from its location.
 
-    There are no tags at the top: a first key that the data lack is that of a part which is at its default.
+    There are no tags at the top level: a missing first key belongs to a part that has its default value.
     """
     loc, kind = item["loc"], item["type"]
     keys: list[str | int] = []
@@ -94,7 +93,7 @@ def _complaint(item: Any, data: Any) -> Complaint:
 
 
 def _distinct(complaints: list[Complaint]) -> list[Complaint]:
-    """One complaint a place; of the alternatives that a value fails, the one that it comes closest to."""
+    """One error per place; if a value fits no alternative, the error of the closest alternative."""
     first: dict[Path, Complaint] = {}
     for complaint in complaints:
         first.setdefault(complaint.path, complaint)
@@ -104,7 +103,7 @@ def _distinct(complaints: list[Complaint]) -> list[Complaint]:
 
 def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry, what: str) -> str:
     path, kind, value, text = complaint
-    if kind == "json_invalid":  # what Python's reader takes and pydantic's does not
+    if kind == "json_invalid":  # valid for Python's reader, but not for pydantic's
         return NESTED if "recursion" in text else f"it is not valid JSON: {text}"
     if kind == "extra_forbidden":
         return _unknown_key(path, Place(schema, data, path[:-1]).keys(), what)
@@ -127,7 +126,7 @@ def _sentence(complaint: Complaint, data: Any, schema: dict, registry: Registry,
 
 
 def _hint(value: Any, place: Place, choices: list[Any]) -> str:
-    """What somebody may have meant: one of the choices, an object that is named by a word, or a number."""
+    """Suggestions for a wrong value: one of the choices, an object named by a word, or a number."""
     if not isinstance(value, str):
         return ""
     selector = place.selector()
@@ -139,7 +138,7 @@ def _hint(value: Any, place: Place, choices: list[Any]) -> str:
 
 
 def _number(text: str) -> str | None:
-    """The number that a text says, with a decimal comma or without, as it stands in a file."""
+    """The number in a text, with a decimal point or comma, as written in a file."""
     digits = text.strip().replace(",", ".")
     try:
         return json.dumps(json.loads(digits)) if math.isfinite(float(digits)) else None
@@ -158,11 +157,11 @@ def _unknown_key(path: Path, allowed: list[str], what: str) -> str:
 
 
 def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> tuple[list[str], str]:
-    """Names of plug-ins that may have been meant but cannot be used, and why the one that was meant cannot.
+    """Suggested plug-ins that cannot be used, and the reason for the most likely one.
 
-    Of the plug-ins that were not loaded, those that may have been meant are named, or else all of them.
+    The sentence names similar plug-ins that were not loaded, or else all that were not loaded.
     """
-    below = path[2:] if path[0] == "walls" else path  # a wall may have the name of a kind
+    below = path[2:] if path[0] == "walls" else path  # the name of a wall may equal that of a kind
     anywhere = path[0] in ("scheme", "walls")
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
     if path[0] == "sinks":

@@ -1,6 +1,6 @@
 """The case: a scene, its materials and the schemes that solve it, as pydantic models.
 
-What depends on the plug-ins that are registered is filled in by ``composed``.
+``composed`` adds the parts that depend on the registered plug-ins.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class Body(Model):
 
     @property
     def largest_speed(self) -> float:
-        """Bound of the initial speed, m/s."""
+        """Upper bound of the initial speed, m/s."""
         if self.velocity is None:
             return 0.0
         vector = self.velocity if isinstance(self.velocity, list) else self.velocity.amplitude
@@ -161,7 +161,7 @@ class Scheme(Model):
     @model_validator(mode="before")
     @classmethod
     def _splitting_says_whether(cls, data: Any) -> Any:
-        """``splitting`` says whether particles are split, ``refinement`` how."""
+        """``splitting`` tells whether particles are split, ``refinement`` how."""
         if not isinstance(data, dict) or not isinstance(data.get("splitting", False), bool):
             return data
         if "refinement" not in data:
@@ -178,7 +178,7 @@ class Scheme(Model):
 
 
 class Wall(Model):
-    """A surface, which may move, and what it allows the material that touches it."""
+    """A surface, which may move, and its contact with the material."""
 
     surface: Surface = Field(description="where the wall is, and how it moves")
     contact: Contact = Field(description="what the wall allows the material that touches it")
@@ -259,8 +259,8 @@ class Case(Model):
 
     @cached_property
     def _downwards(self) -> np.ndarray:
-        """Unit vector of gravity, without what acts along a periodic axis, which has no height; down the last
-        axis where nothing is left."""
+        """Unit vector of gravity without its components along periodic axes, which have no height; down the
+        last axis if no component is left."""
         along = np.array([self.grid.faces.get(f"{axis}_min") == "periodic" for axis in self.space_.axes])
         vector = np.where(along, 0.0, self.gravity_vector)
         if not vector.any():
@@ -269,17 +269,17 @@ class Case(Model):
 
     @cached_property
     def scale(self) -> Scale:
-        """How large the scene is, and what drives it."""
+        """The size of the scene, and its driving forces."""
         return Scale(self.largest_energy, self.height)
 
     @cached_property
     def largest_energy(self) -> float:
-        """Largest energy that a particle has at the start, of speed and height above the lowest one, J/kg."""
+        """Largest initial energy of a particle, J/kg: kinetic, and potential above the lowest particle."""
         fastest = max((body.largest_speed for body in self.bodies), default=0.0)
         return float(np.linalg.norm(self.gravity_vector)) * self.height + fastest**2 / 2
 
     def sound_speed(self, material: Material) -> float | None:
-        """Sound speed of a material at the start, m/s; None where its law needs none."""
+        """Sound speed of a material at the start, m/s; None if its law needs none."""
         if not material.constitutive_law.uses_equation_of_state:
             return None
         speed = material.sound_speed

@@ -1,4 +1,4 @@
-"""The file that somebody means who names one that is not there."""
+"""Suggestion of an existing file for a missing one."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from contextlib import suppress
 from pathlib import Path
 
 FOLDERS = ("", "cases", "cases/studies")
-"""Where files are looked for beside the folder that is named, from the working directory."""
+"""Folders that are searched besides the named one, relative to the working directory."""
 MOST = 1000
-"""Files that are looked at."""
+"""Most files that are compared."""
 LIKE = 0.75
-"""Least likeness of two names, from 0 to 1, that is taken for a slip of the hand."""
+"""Least similarity of two names, from 0 to 1, that counts as a typing error."""
 
 
 def near_file(path: str | Path, suffix: str = ".json") -> Path | None:
-    """The file with the suffix whose name is nearest to that of a path; None if none is near.
+    """The file with this suffix whose name is most similar to that of a path; None if none is similar.
 
-    Looked at are the folder of the path and the folders of cases. The same name in another folder, or without
-    its ending, counts as the nearest.
+    The folder of the path and the folders of cases are searched. The same name in another folder, or without
+    its ending, counts as the most similar.
     """
     wanted = Path(path)
     stem = wanted.stem.casefold()
@@ -32,10 +32,10 @@ def near_file(path: str | Path, suffix: str = ".json") -> Path | None:
 
 
 def _files(wanted: Path, suffix: str) -> Iterator[Path]:
-    """Files of the folder of the path first: of equally near ones, the first is meant."""
+    """Files of the folder of the path first: among equally similar files, the first is suggested."""
     seen = 0
     for folder in dict.fromkeys((wanted.parent, *map(Path, FOLDERS))):
-        with suppress(OSError, ValueError):  # no such folder, or a path that there cannot be
+        with suppress(OSError, ValueError):  # no such folder, or an impossible path
             for file in sorted(folder.iterdir()):
                 if file.suffix == suffix and file.is_file():
                     seen += 1

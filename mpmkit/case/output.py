@@ -1,4 +1,4 @@
-"""What a run writes, and when."""
+"""The output of a run, and its times."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..output.variables import PARTICLE_VARIABLES
 
 NAMED: dict[str, Any] = {"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}}
 ROWS, FRAMES = 400, 20
-"""Rows and frames of a run whose case does not say how often."""
+"""Default numbers of rows and frames of a run."""
 
 
 ParticleFieldName = Annotated[

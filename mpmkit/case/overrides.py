@@ -13,11 +13,11 @@ from .allowed import shown
 from .strict_json import decode
 
 DEEPEST = 20
-"""Keys in a path: far more than any case has levels."""
+"""Most keys in a path: far more than the levels of any case."""
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """A copy of ``data`` with every override applied; the value is JSON, or else taken as text.
+    """A copy of ``data`` with every override applied; the value is JSON, or text if it is not valid JSON.
 
     A part of the path that is a number is an index into a list. A plug-in that is named by a string
     turns into an object when one of its parameters is set: ``scheme.shape.domain=stretch``.
@@ -51,13 +51,13 @@ def _is_path(path: str) -> bool:
 
 
 def assign(data: dict[str, Any], path: str, value: Any) -> None:
-    """Set what is at a path of ``data``, as ``apply_overrides`` does.
+    """Set the value at a path of ``data``, as ``apply_overrides`` does.
 
     Raises:
         ValueError: the path leads nowhere.
     """
     if not _is_path(path):
-        raise ValueError(f"'{path}' is no path; it must read path.to.key, such as scheme.order")
+        raise ValueError(f"'{path}' is not a path; it must read path.to.key, such as scheme.order")
     keys = path.split(".")
     here: Any = data
     for depth, key in enumerate(keys):
@@ -74,7 +74,7 @@ def assign(data: dict[str, Any], path: str, value: Any) -> None:
 
 
 def _in_its_entry(here: Any, index: Any, keys: list[str], value: Any) -> Any:
-    """A parameter with another value, where only that is given; else the value as it is."""
+    """A parameter with a new value if only a value is given; else the value itself."""
     entry = here.get(index) if isinstance(here, dict) else None
     if keys[0] == "parameters" and len(keys) == 2 and isinstance(entry, dict) and not isinstance(value, dict):
         return entry | {"value": value}
@@ -82,7 +82,7 @@ def _in_its_entry(here: Any, index: Any, keys: list[str], value: Any) -> Any:
 
 
 def _plugin_key(path: list[str]) -> str | None:
-    """Key at which the object at a path names its plug-in; None where no plug-in stands."""
+    """Key at which the object at a path names its plug-in; None if there is no plug-in."""
     if len(path) == 3 and path[0] == "walls":
         return KINDS[path[2]][1].named_by if path[2] in KINDS else None
     if (len(path) == 2 and path[0] == "scheme") or path[-1] == "equation_of_state":
@@ -91,7 +91,7 @@ def _plugin_key(path: list[str]) -> str | None:
 
 
 def _index(here: Any, key: str, path: str) -> Any:
-    """The key, or the number that it stands for in a list."""
+    """The key, or the index of a list."""
     if isinstance(here, dict):
         return key
     if not isinstance(here, list):

@@ -1,4 +1,4 @@
-"""The parameters of a case: numbers in plain words at its top, of which the rest is computed.
+"""The parameters of a case: named numbers at its top, from which other numbers are computed.
 
 A case may begin with a block ``parameters``. Any number of the case may then be a text that begins with "=",
 a formula of their names:
@@ -9,7 +9,7 @@ a formula of their names:
     ...
     "shape": {"kind": "cylinder", "radius": "= top_radius", "height": "= 2 * top_radius"}
 
-The block is used up when a case is read: what a run, a study or a fit goes on with has numbers only.
+The block is removed when a case is read: runs, studies and fits only see numbers.
 """
 
 from __future__ import annotations
@@ -61,13 +61,13 @@ SCHEMA = {
 
 
 class Parameter(NamedTuple):
-    """A parameter as it is shown."""
+    """A parameter for display."""
 
     value: float
     unit: str
     description: str
     given: bool
-    """Whether it is a number of the file, and not computed of those above it."""
+    """Whether it is a number in the file, and not a formula of parameters above it."""
 
 
 def expand(data: dict[str, Any], source: str = "case") -> dict[str, Any]:
@@ -118,7 +118,7 @@ def _formulas(data: Any) -> Iterator[str]:
 def _names_in(text: str) -> set[str]:
     try:
         return names_in(parse(text))
-    except ValueError:  # to be said where it is computed
+    except ValueError:  # the error is reported when it is computed
         return set()
 
 
@@ -140,7 +140,7 @@ def parameters(data: dict[str, Any], source: str = "case") -> dict[str, Paramete
         found[name] = Parameter(
             known[name], entry["unit"], entry["description"], not _is_formula(entry["value"])
         )
-    for name, entry in block.items():  # once all are known: a limit may be a parameter further down
+    for name, entry in block.items():  # after all are known: a limit may be a parameter further down
         _check_limits(name, entry, known, source)
     return found
 
@@ -235,7 +235,7 @@ def _computed(value: Any, where: str, known: dict[str, float], source: str) -> A
 
 
 def _fill_in(measurements: Any, known: dict[str, float], source: str) -> None:
-    """Put the numbers of parameters into the formulas of measurements, which are computed in the run."""
+    """Replace parameters by numbers in the formulas of measurements, which are evaluated during the run."""
     for name, entry in measurements.items() if isinstance(measurements, dict) else ():
         if isinstance(entry, dict) and isinstance(entry.get("formula"), str):
             try:

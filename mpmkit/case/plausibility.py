@@ -1,7 +1,7 @@
 """Values that are probably not in SI units: lengths in millimetres, a density in g/cm³, a stress in kPa.
 
-Nothing is refused. Dimensionless numbers come first; magnitudes are judged only where gravity is that of the
-earth, since scenes of unit density and length, as methods are tested with, have none or one of their own.
+Nothing is refused. Dimensionless numbers are checked first. Magnitudes are checked only with the earth's
+gravity, because test scenes with unit density and length have no gravity or another one.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ EARTH = 0.1
 STRONGEST = 1000.0
 """Gravity, m/s²: that of a geotechnical centrifuge; in mm/s² the earth's is 9810."""
 IN_CENTIMETRES, CLOSE = 100 * STANDARD_GRAVITY, 2e-3
-"""The earth's gravity in cm/s², and the relative difference up to which gravity is probably meant so."""
+"""The earth's gravity in cm/s², and the relative difference up to which a value is probably in cm/s²."""
 SIZES = (1e-3, 50.0)
-"""Height of a scene, m, of what is tested and cast."""
+"""Usual height of a scene, m, in tests and castings."""
 DENSITIES = (100.0, 25_000.0)
 """kg/m³, from foam to tungsten."""
 VISCOSITIES = (1e-5, 1e6)
 """Pa s, from thinner than any liquid to bitumen."""
 YIELD_STRESSES = (5e-5, 2.0)
-"""τ0/(ρ g h): below it the yield stress is not felt, above it the material stands like a solid."""
+"""τ0/(ρ g h): below this range the yield stress has no effect, above it the material does not flow."""
 MACH_NUMBERS = (1 / 500, 0.5)
 """√(2 g h), or the speed at the start, over the sound speed."""
 
 
 def implausible(case: Case) -> Iterator[str]:
-    """A sentence for each value that is probably not in SI units: the value, and what is usual."""
+    """A sentence for each value that is probably not in SI units: the value, and the usual range."""
     strength = float(np.linalg.norm(case.gravity_vector))
     if strength > STRONGEST:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in mm/s²?"
@@ -78,7 +78,7 @@ def _on_earth(case: Case, strength: float) -> Iterator[str]:
 
 
 def _viscosity(material: Any) -> tuple[str, float] | None:
-    """The viscosity of a material at 1/s, by the name that its law gives it; None if it has none."""
+    """Name and value of the viscosity of a material at 1/s; None if it has none."""
     for name in ("viscosity", "plastic_viscosity", "consistency"):
         value = getattr(material, name, None)
         if isinstance(value, float) and value > 0:
@@ -87,7 +87,7 @@ def _viscosity(material: Any) -> tuple[str, float] | None:
 
 
 def _sound(where: str, case: Case, body: Body, fastest: float) -> Iterator[str]:
-    """A sound speed given in m/s, against the speed that the scene can reach."""
+    """Check of a sound speed in m/s against the speed that the scene can reach."""
     speed = body.material.sound_speed
     if not isinstance(speed, float) or fastest == 0 or MACH_NUMBERS[0] <= fastest / speed <= MACH_NUMBERS[1]:
         return

@@ -1,4 +1,4 @@
-"""The plug-ins that a case uses, and what they know to fail where they are used as it does."""
+"""The plug-ins that a case uses, and their known problems in this case."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
 
 
 def cautions(case: Case) -> list[str]:
-    """A sentence for each thing that is known to fail, and for each plug-in of an older version, once.
+    """One sentence for each known problem, and for each plug-in of an older version.
 
     Raises:
-        PluginStop: a plug-in cannot say it.
+        PluginStop: a plug-in is at fault.
     """
     used = plugins_of(case)
     with blaming_plugins(used):

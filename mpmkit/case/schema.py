@@ -27,7 +27,7 @@ FORMULA = {"type": "string", "pattern": "^\\s*=", "description": "a formula of t
 
 
 def _allow_formulas(node: Any) -> None:
-    """Let a formula stand wherever a number may."""
+    """Allow a formula wherever a number is allowed."""
     if isinstance(node, list):
         for part in node:
             _allow_formulas(part)
@@ -41,4 +41,4 @@ def _allow_formulas(node: Any) -> None:
 
 
 ABOUT = ("title", "description", "default", "unit", "examples")
-"""Keys of a schema that say what a value is, and not what it may be."""
+"""Keys of a schema that describe a value, and do not restrict it."""

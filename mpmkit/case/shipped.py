@@ -18,7 +18,7 @@ def shipped() -> dict[str, Path]:
     """Their files by name: first the apparatus of the laboratory, then the others.
 
     Raises:
-        CaseError: they are not there, as in an installation that was taken apart.
+        CaseError: they are missing, for example in an incomplete installation.
     """
     package = Path(__file__).parents[1]
     for folder in (package / "cases", package.parent / "cases"):

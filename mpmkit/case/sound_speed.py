@@ -1,4 +1,4 @@
-"""How a case chooses the sound speed that stands in for incompressibility."""
+"""The choices for the artificial sound speed of a nearly incompressible fluid."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class SoundSpeedFactor(Model):
 class SoundSpeedMach(Model):
     """Sound speed that follows the flow, c = √(2 e) / mach.
 
-    e, J/kg, is the largest energy that a particle has, of its speed, of its height above the lowest one, and
-    stored in it: none can come to flow faster than √(2 e). For a body at rest e = g h; as it slumps, e falls,
+    e, J/kg, is the largest energy of a particle: kinetic, potential above the lowest particle, and stored. No
+    particle can become faster than √(2 e). For a body at rest e = g h; as it slumps, e falls,
     and the steps grow.
     """
 
@@ -46,7 +46,7 @@ SoundSpeed = Annotated[
 
 
 def _tag(value: Any) -> str:
-    # No tag is the name of a key: in the path of an error the two must not be taken for each other.
+    # Tags differ from all names of keys, so that the path of an error is clear.
     if isinstance(value, dict):
         return "of-the-flow" if "mach" in value else "of-the-height"
     if isinstance(value, SoundSpeedMach):

@@ -13,7 +13,7 @@ from ..registry.blame import blaming_plugins
 from .model import Case
 
 TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", "component"}
-"""Names of what frames and histories hold beside them."""
+"""Names of the other fields in frames and histories."""
 
 
 def field_name(state: str) -> str:
@@ -22,9 +22,9 @@ def field_name(state: str) -> str:
 
 
 def former_names(case: Case) -> dict[str, str]:
-    """The names that state variables had in ``particle_history`` up to 0.9, with those that they have now.
+    """Names of state variables in ``particle_history`` up to 0.9, and their present names.
 
-    A case that has them stays valid, and its history has them as well.
+    A case with the old names stays valid, and its history also contains them.
     """
     names = {
         f"{name}_of_{law.name}" if name in TAKEN else name: field_name(name)
@@ -37,17 +37,17 @@ def former_names(case: Case) -> dict[str, str]:
 def state_variables(case: Case) -> dict[str, ParticleVariable]:
     """Every state variable of a case by the name of its field; its components are in one flat dimension.
 
-    Laws that have a state variable of the same name share the field; particles of other laws have none, and
-    are not a number there.
+    Laws that have a state variable of the same name share the field; its value is NaN
+    for particles of other laws.
 
     Raises:
-        PluginStop: a law declares a variable that cannot be one.
+        PluginStop: a law declares a variable that is not valid.
         ValueError: two laws have a state variable of one name and of different units or components.
     """
     found: dict[str, ParticleVariable] = {}
     for law in laws_of(case):
         with blaming_plugins([("law", law)]):
-            initial_state(law, 1)  # says what is wrong with a variable, if anything is
+            initial_state(law, 1)  # raises an error if a variable is wrong
         for name, variable in law.state.items():
             field = field_name(name)
             trailing = (f"{field}_component",) if variable.shape else ()
@@ -62,7 +62,7 @@ def state_variables(case: Case) -> dict[str, ParticleVariable]:
 
 
 def particle_variables(case: Case) -> dict[str, ParticleVariable]:
-    """Every particle field that the history of a case may keep, by each name that it may have."""
+    """Every particle field that the history of a case may keep, by all its names."""
     fields = {
         name: ParticleVariable(
             field.unit, field.long_name, (f"{name}_component",) if field.shape else (), flat(field.shape)

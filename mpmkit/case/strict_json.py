@@ -1,4 +1,4 @@
-"""JSON as a case needs it: no key twice in an object, not too many keys, and every number finite."""
+"""Strict JSON for cases: no duplicate keys in an object, not too many keys, and only finite numbers."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any
 
 NESTED = "its objects and lists are nested too deeply"
 MOST_DIGITS = 400
-"""Longest number: more digits than any double has; Python's own limit would be reported in Python's words."""
+"""Longest number: more digits than any double has, and less than Python's limit, whose message is unclear."""
 MOST_KEYS = 10_000
-"""Keys in one object: far more than any case or study has; each one that is unknown is looked at."""
+"""Most keys in one object: far more than any case or study has; each unknown key is checked."""
 LONGEST_PATH = 200
-"""Characters of a place that are shown."""
+"""Most characters of a place that are shown."""
 
 
 @dataclass(frozen=True)
 class Refused:
-    """Stands where the text says something that a case cannot, until it is known where that is."""
+    """Marks a value that a case cannot have, until its place is known."""
 
     why: str
 
@@ -29,8 +29,8 @@ def decode(text: str) -> Any:
 
     Raises:
         json.JSONDecodeError: it is not JSON.
-        ValueError: it is, and says something that a case cannot; the text names the place and is the end of
-            a sentence.
+        ValueError: it is JSON, but contains a value that a case cannot have; the message names the place and
+        is the end of a sentence.
     """
     try:
         data = json.loads(
@@ -62,7 +62,7 @@ def _leaves(data: Any) -> Iterator[tuple[tuple[str | int, ...], Any]]:
     An object with too many keys counts as refused.
     """
     pending: list[tuple[tuple[str | int, ...], Any]] = [((), data)]
-    while pending:  # no recursion: how deep a text may be nested is not for this to say
+    while pending:  # no recursion: the depth of the text is checked elsewhere
         path, value = pending.pop()
         if isinstance(value, dict) and len(value) > MOST_KEYS:
             first = str(next(iter(value)))[:LONGEST_PATH]

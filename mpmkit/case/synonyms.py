@@ -1,7 +1,7 @@
-"""Words of the field for the names of a case: what somebody means who writes "no-slip" or "water".
+"""Common words for the names of a case: the meaning of, for example, "no-slip" or "water".
 
-Spelling alone would take "no-slip" for "slip", the opposite. A word may stand for several names, and where no
-name has the meaning of a word, such as "plane-stress", nothing is proposed.
+By spelling alone, "no-slip" would be taken for "slip", the opposite. A word may have several names as
+meanings. If no name has the meaning of a word, such as "plane-stress", nothing is suggested.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import Any
 
 LONGEST = 60
-"""Characters of a word that are looked at."""
+"""Most characters of a word that are compared."""
 
 WORDS: dict[tuple[str, ...], str] = {
     # faces
@@ -124,14 +124,14 @@ WORDS: dict[tuple[str, ...], str] = {
     ("z",): "y",
     ("r",): "x",
 }
-"""Names of a case, and the words that stand for them, separated by commas."""
+"""Names of a case, and other words for them, separated by commas."""
 
 NEGATIONS = ("non", "not", "no", "un", "in", "anti", "a")
 """Beginnings that turn a word into its opposite."""
 
 
 def meant(word: Any, allowed: Iterable[Any]) -> list[Any]:
-    """Of the names that are allowed, those that a word may have meant; none for what is not alike."""
+    """The allowed names that a word may mean; empty if none is similar."""
     if not isinstance(word, str):
         return []
     plain, names = _plain(word), {_plain(str(name)): name for name in allowed}
@@ -148,7 +148,7 @@ def meant(word: Any, allowed: Iterable[Any]) -> list[Any]:
 
 
 def nearest(word: Any, allowed: Iterable[Any]) -> Any | None:
-    """Of the names that are allowed, the first that a word may have meant."""
+    """The first allowed name that a word may mean."""
     return next(iter(meant(word, allowed)), None)
 
 

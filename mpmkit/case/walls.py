@@ -1,4 +1,4 @@
-"""The walls of a case: their names, and whether space, grid and walls fit together."""
+"""The walls of a case: their names, and their consistency with space and grid."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .model import Case, Wall
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")
 TIMES = 64
-"""Times in a run at which a wall near the domain is looked for."""
+"""Times in a run at which a wall near the domain is checked."""
 POINTS = 1 << 14
-"""Most points of the domain at which it is looked for."""
+"""Most points of the domain at which it is checked."""
 MOST_SPEED = 1e6
-"""m/s; faster than anything that a wall is, and slow enough for what follows from it to be a number."""
+"""m/s; faster than any real wall, and slow enough that results do not overflow."""
 FACE_POINTS, FACE_TIMES = 33, 17
-"""Points along each axis of a face, and times in a run, at which a wall is looked for on it."""
+"""Points along each axis of a face, and times in a run, at which a wall on the face is checked."""
 REACHED, OVER = 0.02, 0.7
 """Cells to which a wall has reached a face; cosine of the angle of their normals above which it covers it."""
 ROUNDING = 1e-9
@@ -28,7 +28,7 @@ ROUNDING = 1e-9
 
 
 def check_walls(case: Case) -> None:
-    """Raise ValueError with one sentence for the first wall that cannot be one.
+    """Raise ValueError with one sentence for the first wall that is not valid.
 
     Raises:
         PluginStop: a surface is at fault.
@@ -79,7 +79,7 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
 
 
 def _leaves_a_plane_of_symmetry(surface: audit.AuditedSurface, case: Case) -> str | None:
-    """The plane of symmetry over which a wall moves inwards, if there is one; looked for at some times."""
+    """The plane of symmetry that a wall crosses inwards, if any; checked at some times."""
     cell = case.grid.cell_size
     lower, upper = case.domain_bounds
     for face in (name for name, kind in case.grid.faces.items() if kind == "symmetry"):
@@ -98,9 +98,9 @@ def _leaves_a_plane_of_symmetry(surface: audit.AuditedSurface, case: Case) -> st
 
 
 def _comes_into_the_domain(surface: audit.AuditedSurface, case: Case) -> bool:
-    """Whether a wall may be in the domain at a time of the run at which it is there.
+    """Whether a wall may be in the domain at some time of the run.
 
-    One that is far away is looked for again when it can have come as far, at the fastest that it will be.
+    A wall that is far away is checked again after the time in which it can arrive at its largest speed.
     """
     time, soon = 0.0, case.end / TIMES
     while time <= case.end:
@@ -114,7 +114,7 @@ def _comes_into_the_domain(surface: audit.AuditedSurface, case: Case) -> bool:
 
 
 def wall_between(case: Case, bounds: tuple[np.ndarray, np.ndarray]) -> bool:
-    """Whether a wall that is there at the start may reach into a box between two corners, m."""
+    """Whether a wall present at the start may reach into a box between two corners, m."""
     with blaming_plugins([("surface", wall.surface) for wall in case.walls.values()]):
         surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
         return any(surface.present(0.0) and _gap(surface, bounds, case, 0.0) <= 0 for surface in surfaces)
@@ -123,9 +123,9 @@ def wall_between(case: Case, bounds: tuple[np.ndarray, np.ndarray]) -> bool:
 def _gap(
     surface: audit.AuditedSurface, bounds: tuple[np.ndarray, np.ndarray], case: Case, time: float
 ) -> float:
-    """How far, m, a wall is from a box at least; not above 0 where it may be in it.
+    """Lower bound of the distance, m, of a wall from a box; 0 or less if it may be in the box.
 
-    d is known at points, and changes no faster than the place does.
+    The distance d is known at points, and changes at most as much as the position.
     """
     lower, upper = bounds
     extent = upper - lower

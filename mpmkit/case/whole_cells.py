@@ -1,7 +1,7 @@
-"""A domain whose cells do not fit: it is extended at an open face, or the nearest cell sizes are named.
+"""A domain that is not a whole number of cells: it is extended, or the message names the nearest cell sizes.
 
-An open face holds nothing, so that the material does not feel where it is. A closed face, or a period, is a
-part of the scene: it stays where the case puts it.
+An open face has no effect on the material, so that it can be moved. A closed face, or a period, is a part of
+the scene: its position is not changed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .model import Case
 WHOLE = 1e-6
 """How far, in cells, a length may be from a whole number of cells and still count as whole."""
 MOST_TRIED = 10_000
-"""Numbers of cells that are tried to find a size that fits."""
+"""Numbers of cells that are tried to find a suitable size."""
 
 
 def cells_along(case: Case, axis: str) -> float:

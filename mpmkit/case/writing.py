@@ -1,4 +1,4 @@
-"""A case as a file that a person reads: what fits on a line stands on one."""
+"""A case as a readable file: parts that fit on a line are written on one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a bug report needs to know of an installation and its machine, and what is wrong with them."""
+"""Facts about an installation and its machine for a bug report, and the problems found in them."""
 
 from .examine import SECTIONS, examine
 from .finding import Finding

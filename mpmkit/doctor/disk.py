@@ -10,7 +10,7 @@ from pathlib import Path
 from .finding import Finding, mebibytes
 
 LITTLE = 2**30
-"""Bytes; frames of a scene in three dimensions take about that."""
+"""Bytes; about the size of the frames of a three-dimensional run."""
 
 
 def disk() -> Finding:
@@ -23,6 +23,6 @@ def disk() -> Finding:
             found.problems.append(f"only {mebibytes(free)} are free on the disk of '{folder}'")
     if not os.access(Path.cwd(), os.W_OK):
         found.problems.append(
-            f"the working directory '{Path.cwd()}' cannot be written: give runs a place with --out DIR"
+            f"the working directory '{Path.cwd()}' cannot be written: choose another directory with --out DIR"
         )
     return found

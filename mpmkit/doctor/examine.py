@@ -1,4 +1,4 @@
-"""All sections of the examination, each of which may fail without the others."""
+"""All sections of the examination. If one fails, the others still run."""
 
 from __future__ import annotations
 

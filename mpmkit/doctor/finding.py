@@ -1,4 +1,4 @@
-"""What is found out about one part of an installation."""
+"""The facts and the problems of one part of an installation."""
 
 from __future__ import annotations
 

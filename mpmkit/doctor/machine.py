@@ -11,7 +11,7 @@ from .finding import Finding
 
 CPU_INFO = Path("/proc/cpuinfo")
 WIDTHS = {"avx512f": 512, "avx2": 256, "avx": 256, "sse2": 128, "neon": 128}
-"""Bits of the widest vector, by the feature that a processor has, the widest first."""
+"""Vector width in bits for each processor feature, the widest first."""
 
 
 def machine() -> Finding:

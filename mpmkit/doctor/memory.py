@@ -5,11 +5,11 @@ from __future__ import annotations
 from .finding import Finding, mebibytes
 
 LITTLE = 2**30
-"""Bytes; a scene in three dimensions needs about that."""
+"""Bytes; about the memory of a three-dimensional run."""
 
 
 def memory() -> Finding:
-    """Memory of the machine, what is left to this process, and what limits it."""
+    """Memory of the machine, memory that this process may still use, and the limit behind it."""
     import psutil
 
     from ..solver.available_memory import tightest_limit

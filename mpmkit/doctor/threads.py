@@ -1,4 +1,4 @@
-"""How many threads a run may use, and what the environment says of it."""
+"""The number of threads that a run may use, and the environment variables that change it."""
 
 from __future__ import annotations
 

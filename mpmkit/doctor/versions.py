@@ -16,7 +16,7 @@ ABSENT = "not installed"
 
 
 def versions() -> Finding:
-    """Every package that mpmkit needs, and those of its extras that are there."""
+    """Every package that mpmkit needs, and the installed packages of its extras."""
     found = Finding({"mpmkit": __version__, "Python": f"{platform.python_version()} ({sys.executable})"})
     for name, is_extra in _used():
         try:

@@ -1,4 +1,4 @@
-"""From measurements to materials: parameters of cases fitted to what was measured."""
+"""From measurements to materials: parameters of cases fitted to measurements."""
 
 from .load import load_fit, parse_fit
 from .model import Fit

@@ -1,4 +1,4 @@
-"""Parameters as coordinates from 0, their lower bound, to 1, their upper one, along their scale."""
+"""Parameters as coordinates along their scale: 0 is the lower bound, 1 the upper bound."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 from .model import Parameter
 
 DIGITS = 6
-"""Digits of a value that is run: what differs in less is the same run."""
+"""Digits of the values in a run: points that agree in these digits share one run."""
 FACTOR = 0.1
-"""Change of a parameter, as part of it, over which derivatives are taken: beyond the noise of a run."""
+"""Relative change of a parameter for derivatives; its effect is larger than the noise of a run."""
 LARGEST_STEP = 0.1
 """Largest such change along the coordinate."""
 
@@ -33,7 +33,7 @@ class Coordinates:
         return any(parameter.prior is not None for parameter in self.parameters)
 
     def without_priors(self) -> Coordinates:
-        """The same box, of which nothing is known beforehand."""
+        """The same box without priors."""
         free = [parameter.model_copy(update={"prior": None}) for parameter in self.parameters]
         return Coordinates(dict(zip(self.paths, free, strict=True)))
 
@@ -55,7 +55,7 @@ class Coordinates:
         return (value - p.low) / (p.high - p.low)
 
     def values(self, u: np.ndarray) -> dict[str, float]:
-        """Values by path at a point, rounded to what is told apart, and within the bounds."""
+        """Values by path at a point, rounded to ``DIGITS`` digits, and within the bounds."""
         found = {}
         for index, (path, p) in enumerate(zip(self.paths, self.parameters, strict=True)):
             rounded = float(f"{self.value(index, float(u[index])):.{DIGITS}g}")
@@ -75,9 +75,9 @@ class Coordinates:
         return np.array(steps)
 
     def prior_residuals(self, u: np.ndarray) -> np.ndarray:
-        """Distances from the priors over their deviations, ``(…, p)``, of the parameters that have one.
+        """Differences from the priors over their deviations, ``(…, p)``, of the parameters that have a prior.
 
-        Along a logarithmic scale the deviation is that of the logarithm, deviation/value.
+        On a logarithmic scale, the deviation of the logarithm is used: deviation/value.
         """
         found = []
         for index, p in enumerate(self.parameters):

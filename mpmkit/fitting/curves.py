@@ -24,15 +24,15 @@ class Curve:
 
 
 def read_curve(where: str, measurement: Measurement, unit: str) -> Curve:
-    """Read the file of a measurement; its lines that begin with # are remarks.
+    """Read the file of a measurement; lines that begin with # are comments.
 
     Args:
-        where: of the measurement, for the sentence about what is wrong.
-        measurement: that has a file.
-        unit: of its variable, which the default name of the column ends with.
+        where: place of the measurement in the fit file, for error messages.
+        measurement: it must have a file.
+        unit: of its variable; the default name of the column ends with it.
 
     Raises:
-        CaseError: the file cannot be read, lacks a column, or has a cell that is no number.
+        CaseError: the file cannot be read, lacks a column, or has a cell that is not a number.
     """
     assert measurement.file is not None
     path = Path(measurement.file)
@@ -41,7 +41,7 @@ def read_curve(where: str, measurement: Measurement, unit: str) -> Curve:
             reader = csv.DictReader(line for line in lines if not line.startswith("#"))
             rows, headings = list(reader), [str(name) for name in reader.fieldnames or ()]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or "it is no CSV file in UTF-8"
+        reason = getattr(error, "strerror", None) or "it is not a CSV file in UTF-8"
         raise CaseError(f"{where}.file: '{path}' cannot be read: {reason}") from None
     columns = measurement.columns
     value = columns.value or f"{measurement.variable}_{unit}"

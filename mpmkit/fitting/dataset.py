@@ -22,10 +22,9 @@ ROWS = 201
 def dataset(fit: Fit, solutions: Mapping[str, Solution]) -> xarray.Dataset:
     """One dataset with a dimension for the runs, and time.
 
-    Of each run it has the law, the test and the stage, the values of the parameters by path, the figures of
-    the
-    summary, the cost, χ² of all tests at that point, and the histories at common times. What a run does not
-    have is not a number.
+    For each run it contains the law, the test and the stage, the values of the parameters by path, the
+    results in the summary, the cost, χ² of all tests at that point, and the histories at common times. Values
+    that a run does not have are NaN.
     """
     rows = [
         (law, solution, point, number)
@@ -47,7 +46,7 @@ def dataset(fit: Fit, solutions: Mapping[str, Solution]) -> xarray.Dataset:
     fields["chi2"] = (
         "run",
         [_chi2(solution, point) for _, solution, point, _ in rows],
-        {"units": "1", "long_name": "misfit of all tests over its uncertainty, squared"},
+        {"units": "1", "long_name": "squared misfit of all tests, relative to its uncertainty"},
     )
     fields["fate"] = ("run", np.array([record.get("fate", "") for record in records], dtype=object))
     for index, (_, solution, point, number) in enumerate(rows):

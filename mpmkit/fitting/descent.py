@@ -1,4 +1,4 @@
-"""Least squares on runs: SciPy's bounded trust region, its derivatives by runs side by side."""
+"""Least squares with runs: SciPy's bounded trust region method; parallel runs give the derivatives."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from .misfit import Misfit
 from .runs import Point, Runs, require
 
 TOLERANCE = 3e-3
-"""Relative change of χ², and of the coordinates, below which a search has come to its end."""
+"""Relative change of χ², and of the coordinates, below which a search ends."""
 MOST_STEPS = 8
-"""Points that a stage tries at the most, beside those of derivatives."""
+"""Most points that a stage tries, besides those for derivatives."""
 FLOOR = 3.0
-"""A residual that stays: a search ends when χ² falls by less than a part of χ² + 9, however small χ² is."""
+"""A constant residual: the search ends when χ² falls by less than ``TOLERANCE`` (χ² + 9)."""
 REFUSED = 1e3
-"""Residual of every row where a guard stopped the run: the step is taken back and halved."""
+"""Residual of every row if a guard stopped the run: the search then rejects the step and shortens it."""
 
 
 class Descent:
     """A search in one stage.
 
-    Each point is run together with its neighbours, which are needed next unless the step is refused: that
-    keeps all cores at work, and makes the runs the same on any number of them.
+    Each point is run together with its neighbours, which are needed next if the step is accepted. So all
+    cores are used, and the runs are the same on any number of cores.
 
     Args:
         runs: of the tests.
@@ -44,7 +44,7 @@ class Descent:
         )
 
     def from_(self, start: np.ndarray, misfit: Callable[[Point], Misfit]) -> np.ndarray:
-        """Coordinates of the least misfit that is found.
+        """Coordinates of the smallest misfit found.
 
         Args:
             start: where it begins.

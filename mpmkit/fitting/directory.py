@@ -1,4 +1,4 @@
-"""The directory of a fit: what was asked, every run, and what was found."""
+"""The directory of a fit: its input, every run, and the result."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ class FitDirectory:
 
     @contextmanager
     def claimed(self, fit: Fit) -> Iterator[None]:
-        """Keep every other fit out of the directory inside the block.
+        """Lock the directory against other fits inside the block.
 
         Raises:
-            CaseError: there is something in it that must not be replaced.
-            OutputError: it cannot be written, or another fit is at work there.
+            CaseError: the directory contains files that must not be replaced.
+            OutputError: it cannot be written, or another fit is running there.
         """
         try:
             filled = self.path.exists() and any(path.name != LOCK_NAME for path in self.path.iterdir())
@@ -50,8 +50,8 @@ class FitDirectory:
             asked = fit.model_dump(mode="json")
             if (self.path / "fit.json").exists() and self._before() != asked and not self._overwrite:
                 raise CaseError(
-                    f"'{self.path}' holds the result of another fit: give --overwrite to replace it, its "
-                    "runs are kept; or --out DIR to write elsewhere"
+                    f"'{self.path}' holds the result of another fit: give --overwrite to replace it (its "
+                    "runs are kept), or --out DIR to write elsewhere"
                 )
             write_json(self._asked, asked)
             yield
@@ -63,7 +63,7 @@ class FitDirectory:
             return None
 
     def write(self, result: FitResult) -> None:
-        """Write the result, figures and page included; ``fit.json`` comes last."""
+        """Write the result, figures and page included; ``fit.json`` is written last."""
         from .figures import draw
         from .page import write_page
 

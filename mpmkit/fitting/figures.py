@@ -1,4 +1,4 @@
-"""Figures of a fit: fitted against measured, the misfit, and the flow curve with its band."""
+"""Figures of a fit: fitted and measured values, the misfit, and the flow curve with its band."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from .runs import Test
 PLACES = 121
 """Places along each axis of a map of the misfit."""
 MARGIN = 1.6
-"""Widths of the intervals that a map shows."""
+"""Size of a map, in widths of the intervals."""
 
 
 def draw(result: FitResult, directory: Path) -> list[Path]:
-    """Draw what there is to draw; returns the PNG files written."""
+    """Draw the figures; return the PNG files written."""
     pictures: dict[str, Callable[[FitResult], Figure | None]] = {
         "fitted": _fitted,
         "misfit": _misfit,
@@ -90,7 +90,7 @@ def _fitted(result: FitResult) -> Figure:
 
 
 def _numbers(axes: Axes, result: FitResult, numbers: list[tuple[Test, Measured, int]]) -> None:
-    """Single numbers: how far the fitted value is from the measured one, over the uncertainty."""
+    """Single numbers: (fitted - measured) / uncertainty."""
     solution, several = result.solution, len(result.solution.runs.tests) > 1
     total = solution.survey.likelihood.misfit.total
     labels = []
@@ -105,12 +105,12 @@ def _numbers(axes: Axes, result: FitResult, numbers: list[tuple[Test, Measured, 
     axes.set_ylim(len(labels) - 0.5, -0.5)
     reach = max(3.0, 1.1 * float(np.abs(axes.get_xlim()).max()))
     axes.set_xlim(-reach, reach)
-    axes.set_xlabel("fitted less measured, over the uncertainty")
+    axes.set_xlabel("(fitted − measured) / uncertainty")
     axes.set_title("single numbers", loc="left")
 
 
 def _misfit(result: FitResult) -> Figure:
-    """A map of Δχ² over the two parameters that are known worst, or the profile of a single one."""
+    """A map of Δχ² over the two most uncertain parameters, or the profile of a single parameter."""
     if len(result.parameters) == 1:
         return _profile(result)
     solution = result.solution
@@ -150,8 +150,8 @@ def _misfit(result: FitResult) -> Figure:
     axes.set_xlabel(names.label(coordinates.paths[i]))
     axes.set_ylabel(names.label(coordinates.paths[j]))
     axes.grid(False)
-    others = "" if len(best) == 2 else ", the others at their best"
-    axes.set_title(f"misfit, and what fits at {100 * result.fit.level:g} %{others}", loc="left")
+    others = "" if len(best) == 2 else ", other parameters at their best values"
+    axes.set_title(f"misfit, and region that fits at {100 * result.fit.level:g} %{others}", loc="left")
     return figure
 
 
@@ -183,14 +183,14 @@ def _profile(result: FitResult) -> Figure:
 
 
 def _plain_numbers(axis: Axis) -> None:
-    """Numbers at the ticks of a logarithmic axis as a person writes them."""
+    """Tick labels of a logarithmic axis as plain numbers."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
 def _around(place: np.ndarray, inside: np.ndarray, best: float) -> np.ndarray:
-    """Those of the places inside that lie together with the best one: beyond them there are no runs."""
+    """The places inside that are connected with the best one; there are no runs around the others."""
     middle = int(np.argmin(np.abs(place - best)))
     gaps = np.flatnonzero(~inside)
     first = max(gaps[gaps < middle], default=-1)
@@ -213,6 +213,6 @@ def _flow_curve(result: FitResult) -> Figure | None:
     axes.set_ylim(bottom=0)
     axes.set_xlabel("shear rate (1/s)")
     axes.set_ylabel("shear stress (Pa)")
-    axes.set_title("flow curve over the shear rates that were reached", loc="left")
+    axes.set_title("flow curve over the shear rates that the tests reached", loc="left")
     axes.legend(loc="best")
     return figure

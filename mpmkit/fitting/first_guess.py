@@ -1,4 +1,4 @@
-"""Where a search begins: a closed form of the test where there is one, else the middle of the bounds."""
+"""Start of a search: a closed-form solution of the test if there is one, else the middle of the bounds."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .coordinates import Coordinates
 from .runs import Test
 
 EDGE = 0.05
-"""A guess keeps this part of the box from its bounds."""
+"""Least distance of a first guess from the bounds, as part of the box."""
 
 
 def first_guess(coordinates: Coordinates, tests: Sequence[Test]) -> tuple[np.ndarray, list[str]]:
-    """Coordinates to begin with, and sentences about the closed forms that gave them."""
+    """Initial coordinates, and sentences about the closed-form solutions that gave them."""
     guess, said = np.full(len(coordinates), 0.5), []
     for index, (path, parameter) in enumerate(zip(coordinates.paths, coordinates.parameters, strict=True)):
         if parameter.start is not None:
@@ -32,7 +32,7 @@ def first_guess(coordinates: Coordinates, tests: Sequence[Test]) -> tuple[np.nda
             if found is not None:
                 stress, source = found
                 guess[index] = np.clip(coordinates.coordinate(index, stress), EDGE, 1 - EDGE)
-                said.append(f"The search for {path} begins at {stress:.3g} Pa, {source}.")
+                said.append(f"The search for {path} starts at {stress:.3g} Pa, {source}.")
                 break
     return guess, said
 
@@ -48,10 +48,10 @@ def _final_spread(test: Test) -> float | None:
 
 
 def yield_stress_of_spread(case: Case, diameter: float | None) -> tuple[float, str] | None:
-    """Yield stress, Pa, of one body at rest with this spread, and the formula; None where there is none.
+    """Yield stress, Pa, of one body at rest with this spread, and the formula; None if none applies.
 
-    Roussel & Coussot, J. Rheol. 49 (2005) 705: tau0 = 225 ρ g V²/(128 π² R⁵) where the floor holds it. On a
-    floor of free slip a sheet of even thickness tau0 = ρ g V/(2 √3 π R²) (docs/accuracy.md).
+    Roussel & Coussot, J. Rheol. 49 (2005) 705: tau0 = 225 ρ g V²/(128 π² R⁵) on a floor without slip. On a
+    floor with free slip, a sheet of uniform thickness: tau0 = ρ g V/(2 √3 π R²) (docs/accuracy.md).
     """
     if diameter is None or diameter <= 0 or len(case.bodies) != 1 or case.space == "plane-strain":
         return None
@@ -61,7 +61,7 @@ def yield_stress_of_spread(case: Case, diameter: float | None) -> tuple[float, s
     face = case.grid.faces.get(f"{case.space_.axes[-1]}_min")
     floor = getattr(face, "kind", face)
     if floor == "stick":
-        return 225 * weight * volume / (128 * math.pi**2 * radius**5), "by Roussel and Coussot's spread"
+        return 225 * weight * volume / (128 * math.pi**2 * radius**5), "by Roussel and Coussot's formula"
     if floor == "slip":
-        return weight / (2 * math.sqrt(3) * math.pi * radius**2), "by an even sheet at rest on free slip"
+        return weight / (2 * math.sqrt(3) * math.pi * radius**2), "by the formula for a flat sheet, free slip"
     return None

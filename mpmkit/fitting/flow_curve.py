@@ -1,4 +1,4 @@
-"""The flow curve that was found, with its band, over the shear rates that the tests reached."""
+"""The fitted flow curve with its band, over the shear rates that the tests reached."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .solve import Solution
 
 PLACES = 61
 SHARE = (0.05, 0.95)
-"""Parts of all that flows, between which the shear rates count as reached."""
+"""Quantiles of the flowing material between which shear rates count as reached."""
 LEAST_RATE = 1e-3
-"""1/s; below it nothing flows."""
+"""1/s; slower material counts as at rest."""
 ROWS = 200
-"""Rows of the run whose particles are looked at."""
+"""Rows of the run whose particles are used."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ class FlowCurve:
 
 
 def flow_curves(solution: Solution, level: float) -> list[FlowCurve]:
-    """The flow curve of each body of which a parameter is sought; none where its law has none.
+    """The flow curve of each body with a fitted parameter; left out if its law has no flow curve.
 
     Raises:
-        Spent: the budget does not last for the run that says which shear rates were reached.
+        Spent: the budget is too small for the run that gives the reached shear rates.
     """
     bodies = sorted(
         {int(path.split(".")[1]) for path in solution.coordinates.paths if _field(path) is not None}
@@ -58,7 +58,7 @@ def flow_curves(solution: Solution, level: float) -> list[FlowCurve]:
 
 
 def _field(path: str) -> str | None:
-    """The parameter of a law at a path such as ``bodies.0.material.yield_stress``; None at others."""
+    """The parameter of a law at a path such as ``bodies.0.material.yield_stress``; None for other paths."""
     keys = path.split(".")
     return keys[3] if len(keys) == 4 and keys[0] == "bodies" and keys[2] == "material" else None
 
@@ -74,7 +74,7 @@ def _curve(solution: Solution, body: int, values: dict[str, float], rates: np.nd
 
 
 def _reached(runs: Runs, values: dict[str, float]) -> tuple[float, float] | None:
-    """Least and largest shear rate of what flowed, 1/s, by the coarsest models at the best values."""
+    """Lowest and highest shear rate of the flow, 1/s, from the coarsest models at the best values."""
     members = []
     for test in runs.tests:
         stage = test.stage(0, runs.stages)

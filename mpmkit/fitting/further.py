@@ -1,4 +1,4 @@
-"""What further measurement would tell most, of all that the runs record."""
+"""The further measurement that would reduce the uncertainty most, of all quantities that the runs record."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .surrogate import Surrogate
 from .words import Names
 
 OF_LENGTHS, OF_TIMES = 0.02, 0.05
-"""Relative uncertainties with which a length and a time are taken to be measured."""
+"""Assumed relative uncertainties of a measured length and of a measured time."""
 PARTS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)
-"""Times, as part of the run, at which histories are tried."""
+"""Times, relative to the run time, at which measurements of histories are considered."""
 HISTORIES = ("spread_diameter", "height")
 WORTH = 0.9
-"""Part of the interval that must be left at the most, for a measurement to be worth naming."""
+"""A measurement is named only if it would leave at most this part of the interval."""
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class Further:
     words: str
     parameter: str
     uncertainty: float
-    """relative, with which it is taken to be made"""
+    """assumed relative uncertainty"""
     left: float
-    """part of the parameter's standard deviation that would be left"""
+    """part of the parameter's standard deviation that would remain"""
 
 
 def further(solution: Solution) -> list[Further]:
-    """Measurements by what they would tell of the parameter that is known worst, the best first.
+    """Measurements sorted by how much they would tell about the most uncertain parameter, the best first.
 
-    One with the slope g and the uncertainty s brings the covariance P of the parameters to
+    A measurement with the slope g and the uncertainty s changes the covariance P of the parameters to
     P − P g gᵀ P/(s² + gᵀ P g).
     """
     covariance = solution.survey.likelihood.covariance(solution.survey.best) * solution.survey.widened
@@ -76,12 +76,12 @@ def further(solution: Solution) -> list[Further]:
 
 
 def sentence(found: list[Further], names: Names) -> str:
-    """The best of them in words."""
+    """A sentence about the best of them."""
     if not found or found[0].left > WORTH:
-        return "Nothing else that these runs record would tell much more; another kind of test would."
+        return "No other quantity that these runs record would tell much more; another kind of test would."
     best = found[0]
     return (
-        f"The {best.words} in test '{best.test}' would tell most beside what was measured: known to "
+        f"The most useful further measurement is the {best.words} in test '{best.test}': known to "
         f"{100 * best.uncertainty:g} %, it would leave {100 * best.left:.0f} % of the uncertainty of the "
         f"{names.name(best.parameter)}."
     )
@@ -98,7 +98,7 @@ def _candidates(test: Test, solution: Solution) -> list[Quantity]:
 
 
 def _rows(solution: Solution, points: list[Point], number: int, quantities: list[Quantity]) -> np.ndarray:
-    """What each run gives, ``(k, q)``; not a number where it never came to be."""
+    """The quantities of each run, ``(k, q)``; NaN if one did not occur."""
     rows = np.full((len(points), len(quantities)), np.nan)
     for place, point in enumerate(points):
         member = point.members[number]

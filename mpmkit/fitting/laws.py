@@ -1,4 +1,4 @@
-"""Laws compared: the evidence for one over another, by Akaike's criterion for few data."""
+"""Comparison of laws by Akaike's criterion for few data (AICc)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from .solve import Solution
 
 STRONG, WEAK = 10.0, 2.0
-"""Differences of the criterion: above the first one law is much the better, below the second neither is."""
+"""Differences of AICc: above the first, one law is far better; below the second, both are equally good."""
 
 
 @dataclass(frozen=True)
@@ -22,16 +22,16 @@ class Evidence:
     rows: int
     chi2: float
     aicc: float
-    """not a number where there are too few rows for so many parameters"""
+    """NaN if there are too few rows for this number of parameters"""
     difference: float
-    """from the best one"""
+    """difference from the AICc of the best law"""
 
 
 def compare(solutions: dict[str, Solution]) -> list[Evidence]:
     """AICc = χ² + 2 k + 2 k (k + 1)/(m − k − 1) of each, with k parameters and m measured numbers.
 
-    χ² is that of the measurements, −2 ln of the likelihood but for a constant that all of them share: it is
-    taken with one and the same covariance, that of the first one. Hurvich & Tsai, Biometrika 76 (1989) 297.
+    χ² is that of the measurements: −2 ln(likelihood) up to a constant that all laws share, because all use
+    the same covariance, that of the first law. Hurvich & Tsai, Biometrika 76 (1989) 297.
     """
     first = next(iter(solutions.values()))
     misfit = first.survey.likelihood.misfit
@@ -46,11 +46,11 @@ def compare(solutions: dict[str, Solution]) -> list[Evidence]:
 
 
 def sentence(evidence: list[Evidence]) -> str:
-    """The comparison in words."""
+    """A sentence about the comparison."""
     if any(not math.isfinite(one.aicc) for one in evidence):
         return (
             f"The measurements are {evidence[0].rows} numbers, too few to compare laws by Akaike's "
-            "criterion, which needs two more than a law has parameters."
+            "criterion; it needs at least two numbers more than a law has parameters."
         )
     best, *others = sorted(evidence, key=lambda one: one.difference)
     told = []
@@ -61,8 +61,8 @@ def sentence(evidence: list[Evidence]) -> str:
         else:
             much = "far better than" if other.difference > STRONG else "better than"
             told.append(
-                f"'{best.law}' describes the measurements {much} '{other.law}', with an evidence of "
-                f"{ratio:.3g} to 1"
+                f"'{best.law}' describes the measurements {much} '{other.law}', with an evidence ratio "
+                f"of {ratio:.3g} to 1"
             )
     numbers = ", ".join(f"'{one.law}' {one.aicc:.4g}" for one in evidence)
     return f"By Akaike's criterion for few data {'; '.join(told)} (AICc: {numbers})."

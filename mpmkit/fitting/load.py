@@ -1,4 +1,4 @@
-"""Reading fit files, to the standard of case files."""
+"""Reading fit files, with the same checks as for case files."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .model import Fit
 
 
 def load_fit(path: str | Path) -> Fit:
-    """Read and validate a fit file; the paths of its cases and of its CSV files count from there.
+    """Read and validate a fit file; relative paths of its cases and CSV files start from its folder.
 
     Raises:
-        CaseError: the fit cannot be read, or says something that no fit can.
+        CaseError: the fit cannot be read or is not valid.
     """
     data = read_json(path, "fit")
     if isinstance(data, dict):

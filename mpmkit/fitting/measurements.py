@@ -1,4 +1,4 @@
-"""What was measured in a test, as one row of numbers beside those that a run gives."""
+"""The measurements of a test, as one row of numbers, and the same numbers from a run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .model import Measurement, Test
 from .quantities import FIGURES, HISTORIES, Quantity
 
 CORRELATION = 0.5
-"""Part of a curve's duration over which the model's error keeps its sign."""
+"""Correlation time of the model's error, relative to the duration of a curve."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Measured:
 
     @property
     def time(self) -> np.ndarray:
-        """s; not a number where it has none."""
+        """s; NaN if it has no time."""
         return np.array(self.quantity.times if self.quantity.times is not None else (math.nan,))
 
     @property
@@ -41,7 +41,7 @@ class Measured:
         return len(self.value) > 1
 
     def correlation(self) -> np.ndarray:
-        """Of the model's error between its rows, ``(n, n)``: exp(−|Δt|/T), T half of the curve's duration."""
+        """Correlation of the model's error, ``(n, n)``: exp(−|Δt|/T), T half of the curve's duration."""
         if not self.is_curve:
             return np.ones((1, 1))
         time = self.time
@@ -50,7 +50,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Predicted:
-    """What a run gives for the rows of all tests, ``(m,)``, and the scales of its errors."""
+    """Predicted values of the rows of all tests, ``(m,)``, and the scales of their errors."""
 
     value: np.ndarray
     scale: np.ndarray
@@ -60,7 +60,7 @@ def measured_in(name: str, test: Test) -> list[Measured]:
     """The measurements of a test.
 
     Raises:
-        CaseError: there is no such variable, or a file is not as it should be.
+        CaseError: a variable does not exist, or a file is not valid.
     """
     return [
         _measured(f"tests.{name}.measurements.{number}", measurement)
@@ -79,7 +79,7 @@ def _measured(where: str, measurement: Measurement) -> Measured:
     timed = measurement.time is not None or measurement.reaches is not None
     if measurement.file is not None:
         if not history:
-            raise CaseError(f"{where}: {variable} is one number a run, so that it has no curve in a file")
+            raise CaseError(f"{where}: {variable} is one number per run; it cannot have a curve in a file")
         curve = read_curve(where, measurement, HISTORIES[variable][0])
         return Measured(where, Quantity(variable, tuple(curve.time), of=of), curve.value, curve.uncertainty)
     if history != timed:
@@ -87,7 +87,7 @@ def _measured(where: str, measurement: Measurement) -> Measured:
             f"{where}: {variable} is a history; give the time at which it was measured, or the level that it "
             "reaches"
             if history
-            else f"{where}: {variable} is one number a run; leave out time and reaches"
+            else f"{where}: {variable} is one number per run; leave out time and reaches"
         )
     value = measurement.value
     assert value is not None
@@ -101,7 +101,7 @@ def _measured(where: str, measurement: Measurement) -> Measured:
 
 
 def predicted(measured: list[Measured], summary: Mapping[str, Any], history: xarray.Dataset) -> Predicted:
-    """What one run gives for the measurements of its test.
+    """Predicted values of one run for the measurements of its test.
 
     Raises:
         CaseError: the run has no such variable, wall or component.
@@ -127,7 +127,7 @@ def predicted(measured: list[Measured], summary: Mapping[str, Any], history: xar
 
 
 def last_time(case: Case, measured: list[Measured]) -> float:
-    """Until when a test has to be run, s: its case's end, or the last row where all is measured over time."""
+    """End of the runs of a test, s: the end of its case, or the last row if all measurements have times."""
     if any(one.quantity.times is None for one in measured):
         return case.end
     return min(case.end, max(float(one.time[-1]) for one in measured))

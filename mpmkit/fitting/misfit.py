@@ -12,14 +12,14 @@ from .measurements import Measured
 
 
 class Misfit:
-    """Residuals r = L⁻¹ (y(x) − d), with L Lᵀ = C, so that r·r is χ².
+    """Residuals r = L⁻¹ (y(x) − d), with L Lᵀ = C, so that r·r = χ².
 
     C = diag(σ²) + e eᵀ ∘ K: σ is the uncertainty of the measurements d, whose errors are independent. e is
-    that of the model, whose errors keep their sign along a curve: K = exp(−|Δt|/T) within a measurement, and
-    0 between two. Independent errors of the model would vanish in the mean over a curve of many rows.
+    the error of the model, which is correlated along a curve: K = exp(−|Δt|/T) within a measurement, and 0
+    between two measurements. Independent model errors would average out over a curve with many rows.
 
     Args:
-        measured: of all tests.
+        measured: the measurements of all tests.
         model_error: e, ``(m,)``, in the units of the rows.
     """
 

@@ -1,4 +1,4 @@
-"""The fit: measurements, the cases that model them, and the parameters sought, as a pydantic model."""
+"""The fit: measurements, the cases that model them, and the parameters to find, as a pydantic model."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..case.base import Model
 
 
 def _said(kind: str, allowed: str) -> WithJsonSchema:
-    """The schema of a type, with what may stand there in words: those of the sentence about a bad value."""
+    """The schema of a type, with the allowed values in words, which error messages use."""
     return WithJsonSchema({"type": kind, "allowed": allowed})
 
 
@@ -94,13 +94,11 @@ class Test(Model):
     __test__ = False  # for pytest, which would collect it by its name
 
     case: CaseOrFile = Field(description="the model of the test: a case file, or the case itself")
-    changes: Changes = Field(
-        default={}, description="values by path that this test has instead of its case's"
-    )
+    changes: Changes = Field(default={}, description="values by path that replace those of its case")
     measurements: list[Measurement] = Field(min_length=1)
     stages: list[Changes] | None = Field(
         default=None,
-        description="from the coarsest model to the finest: what is changed in the case in each stage; "
+        description="changes of the case in each stage, from the coarsest model to the finest; "
         "default: the coarser cells that plan proposes, and then the case itself",
         min_length=1,
     )
@@ -110,14 +108,14 @@ class Test(Model):
 
 
 class Prior(Model):
-    """What is known of a parameter beforehand: a normal distribution along its scale."""
+    """Prior knowledge of a parameter: a normal distribution along its scale."""
 
     value: float
     deviation: float = Field(gt=0, description="standard deviation, in the unit of the parameter")
 
 
 class Parameter(Model):
-    """A number of the case that is sought."""
+    """A number of the case that the fit determines."""
 
     low: float = Field(description="least value tried")
     high: float = Field(description="largest value tried")
@@ -135,7 +133,7 @@ class Parameter(Model):
             )
         if self.scale == "log" and self.low <= 0:
             raise ValueError(
-                f"low is {self.low:g}, which no logarithmic scale has; give a low above 0, or scale 'linear'"
+                f"low is {self.low:g}; on a logarithmic scale it must be above 0, or give scale 'linear'"
             )
         if self.start is not None and not self.low <= self.start <= self.high:
             raise ValueError(f"start is {self.start:g}; it must be from {self.low:g} to {self.high:g}")
@@ -149,21 +147,19 @@ class Parameter(Model):
 class Alternative(Model):
     """Another law, or another model, that is fitted to the same measurements."""
 
-    changes: Changes = Field(default={}, description="values by path that it has instead of the cases'")
-    parameters: dict[str, Parameter] = Field(
-        min_length=1, description="the parameters that it seeks, by path"
-    )
+    changes: Changes = Field(default={}, description="values by path that replace those of the cases")
+    parameters: dict[str, Parameter] = Field(min_length=1, description="the parameters to find, by path")
 
 
 class Budget(Model):
-    """How much may be spent; what is found by then is the result."""
+    """Limits of the effort; the fit returns what it has found by then."""
 
     runs: int = Field(default=400, ge=1, description="new runs")
     minutes: float | None = Field(default=None, gt=0, description="wall time; default: no limit")
 
 
 class Fit(Model):
-    """Measurements, the cases that model them, and what is sought."""
+    """Measurements, the cases that model them, and the parameters to find."""
 
     name: str = Field(
         default="fit",
@@ -176,7 +172,9 @@ class Fit(Model):
     )
     description: str = ""
     tests: dict[str, Test] = Field(min_length=1, description="the tests of the material, by name")
-    parameters: dict[str, Parameter] = Field(min_length=1, description="what is sought, by path in the cases")
+    parameters: dict[str, Parameter] = Field(
+        min_length=1, description="parameters to find, by path in the cases"
+    )
     laws: dict[str, Alternative] = Field(
         default={}, description="other laws to fit to the same measurements, by a name of your own"
     )

@@ -12,19 +12,19 @@ from .model import Fit
 from .runs import Test
 
 COARSEST_GUESS = 0.02
-"""Error of a stage of which nothing is known, while a finer one follows it."""
+"""Assumed error of a stage with unknown error, if a finer stage follows."""
 
 
 @dataclass(frozen=True)
 class ModelError:
-    """Part of each value by which a test's model is off, and how that is known."""
+    """Relative error of the values of a test's model, and its source."""
 
     part: float
     source: str
 
 
 def known_errors(fit: Fit, tests: list[Test]) -> list[ModelError | None]:
-    """For each test the error that the fit file gives, or that the shipped study has of its finest model."""
+    """For each test the error of its finest model, from the fit file or from the shipped study."""
     found: list[ModelError | None] = []
     for test in tests:
         given = fit.tests[test.name].model_error
@@ -40,18 +40,18 @@ def known_errors(fit: Fit, tests: list[Test]) -> list[ModelError | None]:
 
 
 def from_coarser(test: Test, coarse: np.ndarray, fine: np.ndarray, scale: np.ndarray) -> ModelError:
-    """The error of the finer of two models, from what both give at one point.
+    """The error of the finer of two models, from the results of both at one point.
 
-    An error of first order in the cells is the difference over h₁/h₂ − 1, with cells of h₁ and h₂.
+    If the error is of first order in the cell size h, it is (difference of the results) / (h₁/h₂ − 1).
 
     Args:
-        test: whose last two stages they are.
+        test: the test; the models are its last two stages.
         coarse: rows of the test, ``(m,)``, from the last stage but one.
         fine: from the last stage.
         scale: of the rows' errors, ``(m,)``.
     """
     h1, h2 = (stage.case.grid.cell_size for stage in test.stages[-2:])
-    ratio = max(h1 / h2, 1.5)  # stages that differ in something else than cells
+    ratio = max(h1 / h2, 1.5)  # for stages that differ in something other than cells
     known = np.isfinite(scale) & (scale > 0)
     parts = (fine - coarse)[known] / scale[known]
     part = float(np.sqrt(np.mean(parts**2))) / (ratio - 1) if known.any() else 0.0

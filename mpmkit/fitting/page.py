@@ -1,4 +1,4 @@
-"""A page about a fit: what was found, what cannot be known, and the figures."""
+"""The page of a fit: the parameters, their limits of knowledge, and the figures."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ li { margin: .3rem 0; }
 
 
 def write_page(result: FitResult, pictures: list[Path], path: Path) -> None:
-    """Write the page; its pictures lie beside it."""
+    """Write the page; its pictures are files in the same folder."""
     parts = [
         f"<h1>{escape(result.fit.name)}</h1>",
         f"<p>{escape(result.fit.description)}</p>" if result.fit.description else "",
         _table(result.parameters.values()),
-        _list("What there is to say", result.sentences),
+        _list("Remarks", result.sentences),
     ]
     for one in result.evidence:
         parts.append(
@@ -32,7 +32,7 @@ def write_page(result: FitResult, pictures: list[Path], path: Path) -> None:
         )
         parts.append(_table(found_in(result.solutions[one.law], result.fit.level).values()))
     parts += [f'<p><img src="{picture.name}" alt="{picture.stem}"></p>' for picture in pictures]
-    parts.append(f"<p>{result.runs} runs, all of them in runs.nc.</p>")
+    parts.append(f"<p>{result.runs} runs; runs.nc contains all of them.</p>")
     text = (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(result.fit.name)}</title>'
         f"<style>{STYLE}</style></head><body>{''.join(parts)}</body></html>\n"

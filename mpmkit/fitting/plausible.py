@@ -1,4 +1,4 @@
-"""Whether measurements can be true at all: of this scene, in these units, and together."""
+"""Checks of measurements: possible in this scene, in the right units, and without contradictions."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .measurements import Measured
 from .quantities import LENGTHS
 
 MILLIMETRES = 1000.0
-"""What a length in millimetres, or a time in milliseconds, is too large by."""
+"""Factor between millimetres and metres, and between milliseconds and seconds."""
 FAR_APART = 3.0
-"""Standard uncertainties, of two measurements together, beyond which they contradict each other."""
+"""Two measurements contradict each other if they differ by more of their combined standard uncertainties."""
 SPREADS = {"spread_diameter", "final_spread"}
 SLUMPS = {"slump", "final_slump"}
 HEIGHTS = {"height", "final_height", "axis_height"}
 
 
 def check(test: str, case: Case, measured: list[Measured]) -> None:
-    """Refuse what no run of the case can give, and what contradicts itself.
+    """Refuse measurements that no run of the case can give, and measurements that contradict each other.
 
     Raises:
         CaseError: one sentence with the measurement, its value and what is possible.
@@ -35,7 +35,7 @@ def check(test: str, case: Case, measured: list[Measured]) -> None:
 
 
 def _largest(case: Case) -> float:
-    """The largest length that the material can have, m: that of the domain, whose spread is a diameter."""
+    """The largest possible length of the material, m: that of the domain; spreads are diameters."""
     lower, upper = case.domain_bounds
     return float(max((upper - lower) * (2.0 if case.space == "axisymmetric" else 1.0)))
 
@@ -48,7 +48,7 @@ def _units(case: Case, one: Measured) -> None:
     value = float(np.abs(one.value).max())
     length = one.quantity.variable in LENGTHS and not one.quantity.is_time
     largest = _largest(case)
-    # Ten times the scene: a length that is only somewhat too large is met with what is possible instead.
+    # Ten times the scene: lengths that are only a little too large get the message with the possible values.
     if length and value > 10 * largest and value / MILLIMETRES <= 10 * largest:
         raise CaseError(
             f"{_place(one)} is {value:g} m, and the scene is {largest:g} m wide; that looks like "
@@ -97,11 +97,11 @@ def _possible(test: str, case: Case, one: Measured) -> None:
     of = f"from a body of {tallest * MILLIMETRES:.0f} mm in test '{test}'"
     if variable in SLUMPS and largest >= tallest:
         raise CaseError(
-            f"{_place(one)}: nothing gives a slump of {one.value.max() * MILLIMETRES:.0f} mm {of}"
+            f"{_place(one)}: a slump of {one.value.max() * MILLIMETRES:.0f} mm is impossible {of}"
         )
     if variable in HEIGHTS and largest > tallest:
         raise CaseError(
-            f"{_place(one)}: nothing gives a height of {one.value.max() * MILLIMETRES:.0f} mm {of}"
+            f"{_place(one)}: a height of {one.value.max() * MILLIMETRES:.0f} mm is impossible {of}"
         )
     if variable in (SLUMPS | HEIGHTS) and least < 0:
         raise CaseError(f"{_place(one)} is {one.value.min():g} m; it must be at least 0")
@@ -109,7 +109,7 @@ def _possible(test: str, case: Case, one: Measured) -> None:
         first = _first_spread(case)
         if least < 0.98 * first:
             raise CaseError(
-                f"{_place(one)} is {one.value.min():g} m; no run gives a spread below the first one, "
+                f"{_place(one)} is {one.value.min():g} m; it must be at least the spread at the start, "
                 f"{first:g} m"
             )
         if largest > _largest(case):
@@ -120,7 +120,7 @@ def _possible(test: str, case: Case, one: Measured) -> None:
 
 
 def _first_spread(case: Case) -> float:
-    """Diameter of the material before it moves, m; 0 where symmetry planes leave it to the run."""
+    """Diameter of the material before it moves, m; 0 with symmetry planes, where only the run can tell it."""
     ends = [body.shape.bounds(case.space_) for body in case.bodies]
     if case.space == "axisymmetric":
         return 2 * max(float(upper[0]) for _, upper in ends)
@@ -130,7 +130,7 @@ def _first_spread(case: Case) -> float:
 
 
 def _agree(measured: list[Measured]) -> None:
-    """Refuse two numbers of one test that cannot both be true."""
+    """Refuse two numbers of one test that contradict each other."""
     for number, one in enumerate(measured):
         for other in measured[:number]:
             if one.quantity == other.quantity and not one.is_curve:
@@ -140,7 +140,7 @@ def _agree(measured: list[Measured]) -> None:
         for one in measured:
             if one.quantity.variable == "spread_diameter" and not one.quantity.is_time:
                 at = int(np.argmax(one.value))
-                if one.value[at] > end.value[0]:  # a spread never shrinks by more than it springs back
+                if one.value[at] > end.value[0]:  # a spread shrinks only by elastic recoil
                     _close(one, end, one.value[at], end.value[0], one.uncertainty[at], end.uncertainty[0])
             if (
                 one.quantity.variable == "t500"

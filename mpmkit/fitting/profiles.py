@@ -1,4 +1,4 @@
-"""Profile likelihoods on the surrogate: intervals that need no bell curve."""
+"""Profile likelihoods on the surrogate: intervals without the assumption of a normal distribution."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from .misfit import Misfit
 from .surrogate import Surrogate
 
 PLACES = 41
-"""Places along a coordinate at which a profile is computed, beside as many near its best."""
+"""Places along a coordinate at which a profile is computed; as many more are near the best value."""
 SMALL = 1e-4
-"""Change of a coordinate over which the polynomial is differenced."""
+"""Step of a coordinate for finite differences of the polynomial."""
 ITERATIONS = 60
 CLOSE = 1e-7
-"""Change of a coordinate with which a search on the polynomial ends."""
+"""A search on the polynomial ends when the coordinates change by less."""
 UNIFORM = 12.0
-"""1/variance of a coordinate of which nothing is known but that it is from 0 to 1."""
+"""1/variance of a coordinate that is uniformly distributed from 0 to 1."""
 DOUBTFUL = 0.05
-"""Probability of a misfit so large by chance, below which the stated uncertainties are not believed."""
+"""If a misfit as large has a smaller probability, the stated uncertainties are taken as too small."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """What is known of one parameter, along its coordinate."""
+    """The interval and the profile of one parameter, along its coordinate."""
 
     best: float
     low: float
@@ -35,7 +35,7 @@ class Interval:
     """the point of least χ² with the coordinate at the lower end, ``(n,)``"""
     high_at: np.ndarray
     low_open: bool
-    """whether the interval goes on beyond the lower bound"""
+    """whether the interval is cut off at the lower bound"""
     high_open: bool
     place: np.ndarray
     """places along the coordinate, ``(p,)``"""
@@ -44,10 +44,10 @@ class Interval:
 
 
 class Likelihood:
-    """χ² on the surrogate, anywhere in the box, for many points at once.
+    """χ² on the surrogate at many points of the box at once.
 
     The surrogate is linear in its coefficients, so that the residuals are t(u) A − b with the terms t of the
-    polynomial. A QR decomposition leaves as many of them as there are terms, and one more, with the same χ².
+    polynomial. A QR decomposition reduces their number to the number of terms plus one, with the same χ².
 
     Args:
         surrogate: of the finest model.
@@ -62,7 +62,7 @@ class Likelihood:
         self._short = triangle.T
 
     def residuals(self, u: np.ndarray) -> np.ndarray:
-        """Numbers whose squares add up to χ², ``(…, q)``, at points ``(…, n)``: priors come last."""
+        """Residuals whose squares add up to χ², ``(…, q)``, at points ``(…, n)``; priors come last."""
         terms = self.surrogate.terms(u)
         own = np.concatenate([terms, np.ones((*terms.shape[:-1], 1))], axis=-1) @ self._short
         return np.concatenate([own, self.coordinates.prior_residuals(u)], axis=-1)
@@ -79,7 +79,7 @@ class Likelihood:
         )
 
     def covariance(self, u: np.ndarray) -> np.ndarray:
-        """Of the coordinates at a point, ``(n, n)``, bounded by what the box says."""
+        """Covariance of the coordinates at a point, ``(n, n)``, limited by the size of the box."""
         slopes = self.slopes(u)
         return np.linalg.inv(slopes.T @ slopes + UNIFORM * np.eye(len(u)))
 
@@ -88,9 +88,9 @@ class Likelihood:
         return self._least(near[None], np.ones(len(near), dtype=bool))[0]
 
     def _least(self, u: np.ndarray, free: np.ndarray) -> np.ndarray:
-        """Points of least χ² in the box, ``(k, n)``, from as many starts: Levenberg and Marquardt's method.
+        """Points of least χ² in the box, ``(k, n)``, from ``k`` starts, by the Levenberg-Marquardt method.
 
-        Coordinates that are not ``free``, ``(n,)``, stay; so does one at a bound beyond which χ² falls.
+        Coordinates that are not ``free``, ``(n,)``, are fixed; so is one at a bound beyond which χ² falls.
         """
         unit = np.eye(u.shape[1])
         u, chi2, damping = np.clip(u, 0, 1), self.chi2(np.clip(u, 0, 1)), np.full(len(u), 1e-3)
@@ -154,7 +154,7 @@ def critical(level: float) -> float:
 
 
 def widening(chi_squared: float, freedom: int) -> float:
-    """Birge's ratio squared, χ²/ν, where the misfit is larger than chance allows; else 1."""
+    """Birge's ratio squared, χ²/ν, if the misfit is too large to be chance; else 1."""
     if freedom < 1 or gammaincc(freedom / 2, chi_squared / 2) > DOUBTFUL:
         return 1.0
     return chi_squared / freedom

@@ -1,4 +1,4 @@
-"""What a measurement may be of, and what a run gives for it."""
+"""The quantities that can be measured, and their values from a run."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from ..running.recorder import COLUMNS, wall_columns
 from ..study.quantities import FIGURES as OF_A_SUMMARY
 
 FIGURES = {name: OF_A_SUMMARY[name] for name in OF_A_SUMMARY if name not in ("particles", "simulated_time")}
-"""Figures of a summary that can be measured: unit and meaning."""
+"""Results of a summary that can be measured: unit and meaning."""
 HISTORIES = {column.name: (column.units, column.long_name) for column in COLUMNS} | {
     column.name: (column.units, column.long_name) for column in wall_columns(("r", "z"))
 }
 """Variables of a history that can be measured: unit and meaning."""
 TIMES = ("t500", "t500_from_lift")
-"""Figures that are the time at which the spread reaches 500 mm."""
+"""Results that are times at which the spread reaches 500 mm."""
 LENGTHS = {"spread_diameter", "final_spread", "slump", "final_slump", "height", "final_height", "axis_height"}
-"""Those that are lengths of the material."""
+"""Results that are lengths of the material."""
 
 
 SLOWEST = 10.0
-"""Times the length of a run: what a time changes by at the most when the model's lengths change by 1."""
+"""Largest change of a time per relative change of the model's lengths, in run times."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """One thing that is measured: a figure, a history at given times, or when a history reaches a level."""
+    """One measured quantity: a result, a history at given times, or the time when it reaches a level."""
 
     variable: str
     times: tuple[float, ...] | None = None
@@ -53,7 +53,7 @@ class Quantity:
 
     @property
     def words(self) -> str:
-        """What a sentence calls it."""
+        """Its name in sentences."""
         if self.variable in TIMES:
             return "T500" if self.variable == "t500" else "T500 from the lift"
         if self.variable in FIGURES:
@@ -68,12 +68,12 @@ class Quantity:
         return f"{name} over time"
 
     def of_run(self, summary: Mapping[str, Any], history: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
-        """What a run gives: values, and the change of each that a change of the model's lengths by 1 makes.
+        """Values from a run, and the change of each per relative change of the model's lengths.
 
-        The second is |y| of a length, a force or a torque, and of a time level/|rate|, the rate being that of
-        the history when it is reached: an error of 1 % in the spread becomes one in T500.
-        A level that is never reached gives a time beyond the end of the run, the more so the farther it is
-        from the level: it is not believed, but it leads a search the right way.
+        This change is |y| for a length, a force or a torque, and level/|rate| for a time, with the rate of
+        the history when it reaches the level. So an error of 1 % in the spread becomes an error in T500.
+        A level that is never reached gives a time after the end of the run, the later the farther the history
+        is from the level. This time is not a result, but it leads a search in the right direction.
         """
         if self.is_time:
             variable = "spread_diameter" if self.variable in TIMES else self.variable

@@ -1,4 +1,4 @@
-"""Points of the parameters that fit the measurements, for the bands of what depends on them."""
+"""Points of the parameters that fit the measurements, for bands of dependent quantities."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ SEED = 17
 def region(solution: Solution, level: float) -> np.ndarray:
     """Points with Δχ² below the critical value of one number, ``(k, n)``, the best one first.
 
-    The least and the largest value of anything over them are its interval by the profile likelihood. Half of
-    the points are tried around the best by the covariance, half over the intervals of the parameters.
+    The least and the largest value of a quantity over these points are its interval by the profile
+    likelihood. Half of the tried points follow the covariance around the best, half cover the intervals.
     """
     survey = solution.survey
     n, random = len(survey.best), np.random.default_rng(SEED)

@@ -1,4 +1,4 @@
-"""What a fit found, as an object and as the content of ``fit.json``."""
+"""The result of a fit, as an object and as the content of ``fit.json``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Found:
     high: float
     level: float
     identifiable: bool
-    """whether the measurements bound it on both sides within the bounds of its search"""
+    """whether the measurements limit it on both sides within the bounds of the search"""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class FitResult:
 
     fit: Fit
     solutions: Mapping[str, Solution]
-    """of each law, the fit's own first"""
+    """the solution of each law, the law of the cases first"""
     curves: list[FlowCurve] = field(default_factory=list)
 
     @property
@@ -59,7 +59,7 @@ class FitResult:
 
     @cached_property
     def correlation(self) -> np.ndarray:
-        """Of the parameters, ``(n, n)``, in the order of ``parameters``."""
+        """Correlation of the parameters, ``(n, n)``, in the order of ``parameters``."""
         return unknowable.correlation(self.solution)
 
     @cached_property
@@ -69,17 +69,17 @@ class FitResult:
 
     @cached_property
     def further(self) -> list[further.Further]:
-        """Measurements that were not made, the one that would tell most first."""
+        """Possible further measurements, the most useful first."""
         return further.further(self.solution)
 
     @cached_property
     def evidence(self) -> list[laws.Evidence]:
-        """The laws compared; empty where there is one alone."""
+        """The comparison of the laws; empty if there is only one."""
         return laws.compare(dict(self.solutions)) if len(self.solutions) > 1 else []
 
     @cached_property
     def sentences(self) -> list[str]:
-        """What there is to say, in plain words."""
+        """Remarks on the result, in plain words."""
         said = [*self.solution.said, *unknowable.sentences(self.solution, self.names)]
         said.append(further.sentence(self.further, self.names))
         for test, error in zip(self.solution.runs.tests, self.solution.errors, strict=True):
@@ -94,7 +94,7 @@ class FitResult:
 
     @property
     def runs(self) -> int:
-        """Runs that the result was made of, kept ones included."""
+        """Number of runs behind the result, stored runs included."""
         slugs = {m.slug for s in self.solutions.values() for point in s.runs.points for m in point.members}
         return len(slugs)
 
@@ -167,7 +167,7 @@ def _entry(found: Found) -> dict[str, Any]:
 
 
 def _measurements(solution: Solution) -> list[dict[str, Any]]:
-    """Measured and fitted, of each measurement; of a curve the largest difference and the mean square one."""
+    """Measured and fitted value of each measurement; for a curve, the largest and the RMS difference."""
     found, start, total = [], 0, solution.survey.likelihood.misfit.total
     for test in solution.runs.tests:
         for one in test.measured:

@@ -32,18 +32,18 @@ def fit(
 ):
     """Find the parameters of cases from measurements.
 
-    Least squares on the misfit over its uncertainty, χ² = (y − d)ᵀ C⁻¹ (y − d), in coarse models first and
-    then in finer ones, with derivatives by runs side by side; then intervals by the profile likelihood on a
-    polynomial through the runs of the finest model (docs/fit.md).
+    The fit minimises χ² = (y − d)ᵀ C⁻¹ (y − d), first with coarse models and then with finer ones. Parallel
+    runs give the derivatives. The intervals come from the profile likelihood on a polynomial through the runs
+    of the finest model (docs/fit.md).
 
     Args:
         fit: a fit file, its content, or a ``Fit``.
-        out: directory to write, and to go on in; nothing is kept without one.
+        out: directory for results and runs; a fit continues from the runs there. Default: nothing is written.
         overwrite: whether the result of another fit in ``out`` may be replaced; its runs are kept in any
         case. threads: of each run; default: as the fit says.
         workers: runs at once on this machine; default: as many as its cores hold of ``threads``.
         executor: of ``concurrent.futures``, runs them instead of processes of this machine.
-        listen: called with each run that has ended, and what came of it.
+        listen: called with each run that has ended, and its result.
 
     Returns:
         A ``FitResult``: ``parameters`` by path with ``value``, ``low``, ``high``, ``level`` and
@@ -52,7 +52,7 @@ def fit(
 
     Raises:
         CaseError: bad input, a measurement that no run can give, or SciPy is not installed.
-        GuardStop: a guard stopped a run that cannot be done without.
+        GuardStop: a guard stopped a run that the fit needs.
         OutputError: the directory cannot be written.
     """
     require_scipy()
@@ -80,7 +80,7 @@ def fit(
 
 
 def prepared(fit: Fit) -> dict[str, tuple[Alternative, list[Test]]]:
-    """What is fitted, by law, the fit's own first: all that can be wrong is found here, before anything runs.
+    """What is fitted, by law, the law of the cases first; all input is checked here, before the first run.
 
     Raises:
         CaseError: one sentence that names the place in the fit file.
@@ -108,7 +108,7 @@ def prepared(fit: Fit) -> dict[str, tuple[Alternative, list[Test]]]:
 
 
 def _require_valid(test: Test, path: str, end: str, value: float) -> None:
-    """Refuse a bound that the case itself refuses."""
+    """Refuse bounds that are not valid in the case."""
     try:
         test.stages[-1].member({path: value})
     except CaseError as error:
@@ -117,7 +117,7 @@ def _require_valid(test: Test, path: str, end: str, value: float) -> None:
 
 
 def _law(test: Test) -> str:
-    """The law of the cases, as the one that the others are compared with."""
+    """Name of the law of the cases, with which the others are compared."""
     return test.stages[-1].case.bodies[0].material.law
 
 
@@ -142,7 +142,7 @@ def _fitted(fit: Fit, candidates, store, threads: int, executor: Executor, liste
 
 
 def _read_all(result) -> None:
-    """What is read from the directory while it is there."""
+    """Read what is needed from the directory while it exists."""
     _ = result.dataset, result.further, result.sentences, result.as_json()
 
 

@@ -1,4 +1,4 @@
-"""Runs of all tests at points of the parameters: side by side, kept, and never made twice."""
+"""Runs of all tests at points of the parameters: in parallel, stored, and never made twice."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ FINISHED = "finished"
 
 
 class Spent(Exception):
-    """The budget does not last for the next runs."""
+    """The budget is too small for the next runs."""
 
 
 @dataclass(frozen=True)
 class Test:
-    """A test with its models and what was measured in it."""
+    """A test with its models and its measurements."""
 
     __test__ = False  # for pytest, which would collect it by its name
 
@@ -39,7 +39,7 @@ class Test:
     measured: list[Measured]
 
     def stage(self, number: int, of: int) -> Stage:
-        """Its model in a stage of all tests together; one with fewer models has its own last ones."""
+        """Its model in a stage of all tests. A test with fewer models uses them in the last stages."""
         return self.stages[max(0, len(self.stages) - of + number)]
 
 
@@ -53,14 +53,14 @@ class Point:
     predicted: Predicted | None
     """None where a guard stopped a run"""
     sentence: str
-    """what there is to say of a run that a guard stopped"""
+    """message of a run that a guard stopped"""
 
 
 class Purse:
-    """What is left of the budget.
+    """The rest of the budget.
 
     Args:
-        budget: of the whole fit.
+        budget: budget of the whole fit.
     """
 
     def __init__(self, budget: Budget) -> None:
@@ -72,7 +72,7 @@ class Purse:
         """Take runs from the budget.
 
         Raises:
-            Spent: there are not so many left, or the time is over.
+            Spent: there are fewer runs left, or the time is over.
         """
         if runs and (
             self.spent + runs > self._runs or (self._end is not None and clock.monotonic() >= self._end)
@@ -86,9 +86,9 @@ class Runs:
 
     Args:
         tests: of the material.
-        store: keeps what each run gave.
+        store: keeps the result of each run.
         threads: of each run.
-        purse: what may be spent.
+        purse: the rest of the budget.
         executor: runs them.
         listen: called for each run that has ended.
     """
@@ -116,11 +116,11 @@ class Runs:
         return self.stages - 1
 
     def at(self, stage: int, places: Sequence[dict[str, float]]) -> list[Point]:
-        """What the tests give at some places, in their order.
+        """The results of the tests at some points, in the order of the points.
 
         Raises:
-            Spent: the budget does not last for them.
-            MpmkitError: a run failed for the machine's sake; those that were done are kept.
+            Spent: the budget is too small for them.
+            MpmkitError: a run failed because of the machine; finished runs are kept.
         """
         keys = [(stage, tuple(values.values())) for values in places]
         new = {key: values for key, values in zip(keys, places, strict=True) if key not in self._known}
@@ -135,10 +135,10 @@ class Runs:
         return [self._known[key] for key in keys]
 
     def make(self, members: Sequence[Member]) -> None:
-        """Run what has not been run yet, side by side.
+        """Make the missing runs in parallel.
 
         Raises:
-            Spent: the budget does not last for them.
+            Spent: the budget is too small for them.
         """
         waiting = {member.slug: member for member in members if not self._store.settled(member)}
         self._purse.pay(len(waiting))
@@ -147,14 +147,14 @@ class Runs:
         )
 
     def history(self, member: Member) -> xarray.Dataset | None:
-        """History of a run; None where it left none."""
+        """History of a run; None if there is none."""
         path = self._store.history(member)
         if path is not None and member.slug not in self._histories:
             self._histories[member.slug] = read_dataset(path)
         return self._histories.get(member.slug)
 
     def record(self, member: Member) -> dict:
-        """What ``member.json`` of a run holds."""
+        """Content of ``member.json`` of a run."""
         return self._store.outcome(member) or {}
 
     def _point(self, stage: int, values: dict[str, float], members: list[Member]) -> Point:
@@ -177,12 +177,12 @@ class Runs:
 
 
 def said(values: dict[str, float]) -> str:
-    """Values as a sentence names them."""
+    """Values in the words of a sentence."""
     return ", ".join(f"{path} = {value:.4g}" for path, value in values.items())
 
 
 def require(point: Point) -> Predicted:
-    """What a point gives.
+    """The predicted values at a point.
 
     Raises:
         GuardStop: a guard stopped a run there.

@@ -18,21 +18,21 @@ from .runs import Point, Runs, Spent, require
 from .survey import Survey, Surveyor
 
 MISSED = 3.0
-"""Standard uncertainties by which a number may be missed before the sentence about it comes."""
+"""A number missed by more of its standard uncertainties gets a sentence."""
 AT_A_BOUND = 0.01
-"""Part of the box within which a parameter is at its bound."""
+"""A parameter closer to its bound than this part of the box counts as at its bound."""
 
 
 @dataclass(frozen=True)
 class Solution:
-    """What a fit has found."""
+    """The solution of a fit."""
 
     runs: Runs
     coordinates: Coordinates
     stage: int
     survey: Survey
     errors: list[ModelError | None]
-    """of each test; None where nothing is known of it"""
+    """model error of each test; None if it is not known"""
     said: list[str]
     """sentences about how it was found"""
 
@@ -53,12 +53,12 @@ def solve(runs: Runs, coordinates: Coordinates, known: list[ModelError | None], 
     Args:
         runs: of the tests.
         coordinates: of the parameters.
-        known: the errors of the finest models, of which nothing may be known.
+        known: the errors of the finest models; None for an unknown error.
         level: of the intervals.
 
     Raises:
         CaseError: the budget is too small, or the model cannot give what was measured.
-        GuardStop: a guard stopped a run that cannot be done without.
+        GuardStop: a guard stopped a run that the fit needs.
     """
     measured = [one for test in runs.tests for one in test.measured]
     u, said = first_guess(coordinates, runs.tests)
@@ -83,14 +83,14 @@ def solve(runs: Runs, coordinates: Coordinates, known: list[ModelError | None], 
             continue
         if spent or survey.spent:
             said.append(
-                "The budget was spent before the fit had come to its end: give a larger one, and the fit "
-                "goes on from here."
+                "The budget was used up before the fit had finished. Give a larger budget: the fit then "
+                "continues from here."
             )
         found = Solution(runs, coordinates, stage, survey, errors, said)
         _refuse_what_no_run_gives(found, measured)
         return found
     raise CaseError(
-        f"budget: it does not last for the first search; a search of {len(coordinates)} parameters needs "
+        f"budget: it is too small for the first search; a search of {len(coordinates)} parameters needs "
         f"about {10 * len(runs.tests) * (len(coordinates) + 1)} runs"
     )
 
@@ -124,7 +124,7 @@ def _roughly(point: Point, measured: list[Measured]) -> float:
 def _errors(
     runs: Runs, coordinates: Coordinates, u: np.ndarray, known: list[ModelError | None]
 ) -> list[ModelError | None]:
-    """Errors of the finest models: those that are not known, from the models before them at the same "
+    """Errors of the finest models. An unknown one is found from the next coarser model at the same "
     "point."""
     if runs.stages == 1 or None not in known:
         return known
@@ -157,10 +157,10 @@ def _misfit_at(runs: Runs, measured: list[Measured], parts: list[float], first: 
 
 
 def _refuse_what_no_run_gives(found: Solution, measured: list[Measured]) -> None:
-    """Refuse a number that is missed by far with a parameter at its bound.
+    """Refuse a measurement that the fit misses by far while a parameter is at its bound.
 
     Raises:
-        CaseError: the sentence says what comes nearest.
+        CaseError: the sentence names the nearest possible value.
     """
     bound = [index for index, u in enumerate(found.survey.best) if not AT_A_BOUND <= u <= 1 - AT_A_BOUND]
     if not bound:
@@ -180,6 +180,6 @@ def _refuse_what_no_run_gives(found: Solution, measured: list[Measured]) -> None
         )
         raise CaseError(
             f"{one.where}.value: no {names} gives a {one.quantity.words} of {one.value[0]:.4g} "
-            f"{one.quantity.unit}; {found.fitted[row]:.4g} {one.quantity.unit} comes nearest, at the "
+            f"{one.quantity.unit}; {found.fitted[row]:.4g} {one.quantity.unit} is the nearest value, at the "
             f"bound {at}"
         )

@@ -20,7 +20,7 @@ from .measurements import Measured, last_time
 from .model import Changes, Test
 
 CELLS = {"grid.cell_size", "grid.domain"}
-"""What a model with coarser cells changes, and nothing else."""
+"""The only paths that a model with coarser cells changes."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class Stage:
     case: Case
 
     def member(self, values: dict[str, Any]) -> Member:
-        """The run with these values of the parameters; its name is that of its content.
+        """The run with these values of the parameters; its name is the hash of its content.
 
         Raises:
-            CaseError: the case takes no such values.
+            CaseError: the values are not valid in the case.
         """
         data = copy.deepcopy(self.data)
         for path, value in values.items():
@@ -51,9 +51,9 @@ def stages_of(name: str, test: Test, changes: Changes, measured: list[Measured])
 
     Args:
         name: of the test.
-        test: as the fit file has it.
-        changes: values by path that come on top of the test's own.
-        measured: what was measured in it, which says how long a run has to last.
+        test: the test in the fit file.
+        changes: values by path, in addition to those of the test.
+        measured: its measurements, which determine how long a run must last.
 
     Raises:
         CaseError: a case is not valid.
@@ -84,17 +84,17 @@ def stages_of(name: str, test: Test, changes: Changes, measured: list[Measured])
 
 
 def _coarser(case: Case) -> list[Changes]:
-    """Changes that make the cells coarser, the coarsest first, and last none."""
+    """Changes that make the cells coarser, the coarsest first; the last entry is empty."""
     coarser = [model for model in cheaper_models(case) if set(model.changes) == CELLS]
     coarser.sort(key=lambda model: -model.case.grid.cell_size)
     return [*(model.changes for model in coarser), {}]
 
 
 def check_path(stage: Stage, path: str) -> None:
-    """Refuse a path that leads to no number of a case.
+    """Refuse a path that does not lead to a number of a case.
 
     Raises:
-        CaseError: the sentence names what is there.
+        CaseError: the sentence says what the path leads to.
     """
     here: Any = resolved(stage.case)
     keys = path.split(".")
@@ -116,10 +116,9 @@ def check_path(stage: Stage, path: str) -> None:
             raise CaseError(f"parameters.{path}: {stage.where} has no such place; {place} {there}")
     if isinstance(here, bool) or not isinstance(here, int | float):
         raise CaseError(
-            f"parameters.{path}: it is {shown(here)} in {stage.where}; what is sought must be a number"
+            f"parameters.{path}: it is {shown(here)} in {stage.where}; a parameter must be a real number"
         )
     if isinstance(here, int):
         raise CaseError(
-            f"parameters.{path}: it is a whole number in {stage.where}; what is sought must change "
-            "continuously"
+            f"parameters.{path}: it is a whole number in {stage.where}; a parameter must change continuously"
         )

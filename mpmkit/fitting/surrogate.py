@@ -1,9 +1,9 @@
-"""A polynomial through the runs: what the tests give at any point near the best one, at once.
+"""A polynomial through the runs: it predicts the tests at points near the best one without new runs.
 
-Profiles need the model at thousands of points. A polynomial in the coordinates, of degree 1 to 3 by what the
-runs bear, follows the smooth curves that spreads and times are over the width of an interval, has no length
-scale that has to be guessed from a dozen runs, as a Gaussian process has, and averages the noise of single
-runs.
+Profiles need the model at thousands of points. Spreads and times are smooth over the width of an interval, so
+that a polynomial in the coordinates follows them. Its degree, 1 to 3, depends on the number of runs. Unlike a
+Gaussian process, it needs no length scale, which a dozen runs could not determine. It also averages the noise
+of single runs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 SPARE = 1.3
-"""Runs for each coefficient, at the least, of a degree that may be chosen."""
+"""Least number of runs per coefficient for a degree to be allowed."""
 HIGHEST = 3
 
 
@@ -23,9 +23,9 @@ class Surrogate:
 
     Args:
         u: coordinates of the runs, ``(k, n)``.
-        y: what they gave, ``(k, m)``.
+        y: their results, ``(k, m)``.
         weight: of each run, ``(k,)``, largest near the best.
-        scale: of the rows, ``(m,)``, by which the errors of two degrees are compared.
+        scale: of the rows, ``(m,)``, to compare the errors of two degrees.
     """
 
     def __init__(self, u: np.ndarray, y: np.ndarray, weight: np.ndarray, scale: np.ndarray) -> None:
@@ -43,12 +43,12 @@ class Surrogate:
                 best = (size, degree, coefficients, error)
         assert best is not None
         _, self.degree, self.coefficients, self.error = best
-        """``error``, ``(m,)``: how far a run lies from the polynomial of the others"""
+        """``error``, ``(m,)``: typical distance of a run from the polynomial through the others"""
 
     def _fitted(
         self, u: np.ndarray, y: np.ndarray, weight: np.ndarray, degree: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients, and by how much each run is missed when it is left out."""
+        """Coefficients, and the error of the prediction of each run when it is left out."""
         terms, root = self._terms(u, degree), np.sqrt(weight)[:, None]
         inverse = np.linalg.pinv(root * terms, rcond=1e-8)
         coefficients = inverse @ (root * y)
@@ -77,7 +77,7 @@ class Surrogate:
 
 
 def count(n: int, degree: int) -> int:
-    """Coefficients of a polynomial in n coordinates."""
+    """Number of coefficients of a polynomial in n coordinates."""
     return math.comb(n + degree, degree)
 
 

@@ -1,4 +1,4 @@
-"""Runs around the best point, until the surrogate says there what runs say."""
+"""Runs around the best point, until the surrogate agrees with the runs there."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .runs import Point, Runs, Spent
 from .surrogate import Surrogate
 
 ROUNDS = 4
-"""Times that runs are added at the ends of the intervals."""
+"""How often runs are added at the ends of the intervals, at most."""
 AGREES = 0.5
-"""Part of the critical Δχ² by which the surrogate may miss a run at an end of an interval."""
+"""Allowed error of the surrogate at the ends of an interval, relative to the critical Δχ²."""
 WIDE = 0.12
-"""Standard deviation of a coordinate from which on it is run from bound to bound."""
+"""If the standard deviation of a coordinate is larger, runs cover it from bound to bound."""
 FAR = 1.5
-"""Standard deviations from the best at which the first runs are made."""
+"""Distance of the first runs from the best point, in standard deviations."""
 
 
 @dataclass(frozen=True)
 class Survey:
-    """What the runs say around the best point."""
+    """The result of the runs around the best point."""
 
     likelihood: Likelihood
     best: np.ndarray
@@ -34,21 +34,21 @@ class Survey:
     """whether the measurements, without priors, bound each parameter on both sides"""
     chi2: float
     widened: float
-    """χ²/ν, where it is more than chance allows; 1 elsewhere"""
+    """χ²/ν if it is too large to be chance; else 1"""
     agrees: bool
-    """whether runs at the ends of the intervals say what the surrogate says"""
+    """whether the surrogate agrees with runs at the ends of the intervals"""
     spent: bool
     """whether the budget ended before that"""
 
 
 class Surveyor:
-    """Puts runs where the intervals need them.
+    """Makes the runs that the intervals need.
 
     Args:
         runs: of the tests.
         stage: number of the finest model.
         coordinates: of the parameters.
-        misfit: of the measurements, with what the surrogate misses them by, ``(m,)``.
+        misfit: of the measurements, for an error of the surrogate, ``(m,)``.
         level: of the intervals.
     """
 
@@ -64,10 +64,10 @@ class Surveyor:
         self._misfit, self._level = misfit, level
 
     def around(self, start: np.ndarray) -> Survey:
-        """Survey the neighbourhood of a point that a search has found.
+        """Survey the neighbourhood of the result of a search.
 
         Raises:
-            Spent: the budget does not even last for a straight line.
+            Spent: the budget is too small even for a polynomial of degree 1.
         """
         spent = False
         try:
@@ -98,7 +98,7 @@ class Surveyor:
         )
 
     def _first(self, start: np.ndarray) -> list[np.ndarray]:
-        """Places on both sides of the best along every parameter, the others following its valley."""
+        """Points on both sides of the best for each parameter; the others follow by the covariance."""
         likelihood = self._likelihood()
         covariance = likelihood.covariance(start)
         places = []
@@ -113,7 +113,7 @@ class Surveyor:
         return places
 
     def _likelihood(self) -> Likelihood:
-        """The surrogate through all runs of the finest model, by how well each fits."""
+        """The surrogate through all runs of the finest model, weighted by how well each fits."""
         known = [p for p in self._runs.points if p.stage == self._stage and p.predicted is not None]
         u = np.array([self._u(point) for point in known])
         if len(np.unique(u, axis=0)) <= len(self._coordinates):
@@ -148,7 +148,7 @@ class Surveyor:
     def _agrees(self, found: Survey, point: Point) -> bool:
         """Whether a run has the χ² that the surrogate has there."""
         if point.predicted is None:
-            return True  # a guard stopped it; nothing more can be had there
+            return True  # a guard stopped it; there is no result to compare
         u = self._u(point)
         run = float(np.sum(found.likelihood.misfit.residuals(point.predicted.value) ** 2))
         run += float(np.sum(self._coordinates.prior_residuals(u) ** 2))
@@ -156,5 +156,5 @@ class Surveyor:
 
 
 def _per_row(chi2: float, rows: int) -> float:
-    """χ² of a row, at least 1: where nothing fits, runs a little worse than the best are as good."""
+    """χ² per row, at least 1: if no run fits well, slightly worse runs get a similar weight."""
     return max(1.0, chi2 / rows)

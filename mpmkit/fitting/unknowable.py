@@ -9,15 +9,15 @@ from .solve import MISSED, Solution
 from .words import Names, length
 
 BOUND_TOGETHER = 0.95
-"""Correlation of two parameters from which on they are not told apart."""
+"""Above this correlation, two parameters cannot be distinguished."""
 PLACES = 61
-"""Places along a parameter at which it is seen whether anything depends on it."""
+"""Places along a parameter at which its influence is checked."""
 WIDE = 0.3
-"""Part of an interval over which nothing depends on the parameter, from which on that is what is said."""
+"""If the parameter has no influence over more than this part of its interval, the sentence says so."""
 
 
 def correlation(solution: Solution) -> np.ndarray:
-    """Of the parameters, along their scales, ``(n, n)``."""
+    """Correlation of the parameters, along their scales, ``(n, n)``."""
     covariance = solution.survey.likelihood.covariance(solution.survey.best)
     width = np.sqrt(np.diag(covariance))
     return covariance / np.outer(width, width)
@@ -42,26 +42,26 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     from_prior = not (interval.low_open or interval.high_open)
     if flat:
         depends = "do not depend" if len(flat) > 1 else "does not depend"
-        prior = " What is said of it comes from its prior alone." if from_prior else ""
+        prior = " Its interval comes from its prior alone." if from_prior else ""
         between = names.said(path, flat_low, flat_high)
         return f"The {' and the '.join(flat)} {depends} on the {name} {between}.{prior}"
     if from_prior or (interval.low_open and interval.high_open):
         return (
             f"The {name} cannot be known from these measurements: any value {names.said(path, low, high)} "
-            "fits them, since another parameter makes up for it."
+            "fits them, because another parameter compensates for it."
         )
     end, known = (high, "at most") if interval.low_open else (low, "at least")
     bound = "lower" if interval.low_open else "upper"
     return (
-        f"Of the {name} these measurements only say that it is {known} {names.said(path, end)}: the "
+        f"These measurements only show that the {name} is {known} {names.said(path, end)}: the "
         f"{bound} bound of the search fits as well."
     )
 
 
 def _flat(solution: Solution, index: int, interval: Interval) -> tuple[list[str], float, float]:
-    """What was measured, and between which values of a parameter alone none of it changes.
+    """The measured quantities, and the range of a parameter in which none of them changes.
 
-    The others stay at their best; to change is to change by more than the uncertainty of a row.
+    The other parameters stay at their best. A change smaller than the uncertainty of a row does not count.
     """
     along = np.repeat(solution.survey.best[None], PLACES, axis=0)
     along[:, index] = np.linspace(interval.low, interval.high, PLACES)
@@ -96,8 +96,8 @@ def _missed(solution: Solution) -> list[str]:
     survey = solution.survey
     if survey.widened > 1:
         said.append(
-            f"The misfit is {np.sqrt(survey.widened):.2g} times what the uncertainties explain, so that the "
-            "intervals were widened by that: the model lacks something, or the uncertainties are larger."
+            f"The misfit is {np.sqrt(survey.widened):.2g} times what the uncertainties explain, and the "
+            "intervals were widened by this factor: the model is incomplete, or the uncertainties are larger."
         )
     start, total = 0, survey.likelihood.misfit.total
     for test in solution.runs.tests:
@@ -108,12 +108,12 @@ def _missed(solution: Solution) -> list[str]:
             if not one.is_curve and abs(off) > MISSED:
                 unit = one.quantity.unit
                 said.append(
-                    f"The {one.quantity.words} of test '{test.name}' is missed: measured "
+                    f"The {one.quantity.words} of test '{test.name}' does not fit: measured "
                     f"{length(one.value[0], unit)}, fitted {length(solution.fitted[row], unit)}."
                 )
     if not survey.agrees:
         said.append(
-            "At the ends of the intervals runs do not quite say what the polynomial through them says: "
-            "take the intervals as rough."
+            "At the ends of the intervals, the runs differ from the polynomial through them: "
+            "the intervals are approximate."
         )
     return said

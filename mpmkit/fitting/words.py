@@ -1,4 +1,4 @@
-"""What parameters are called in sentences and figures."""
+"""Names of parameters in sentences and figures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Names:
         return self._short[path]
 
     def unit(self, path: str) -> str:
-        """``Pa s``; nothing for a number without a unit."""
+        """``Pa s``; empty for a number without a unit."""
         unit = self._units[path]
         return "" if unit in (None, "1") else str(unit)
 
@@ -39,5 +39,5 @@ class Names:
 
 
 def length(value: float, unit: str) -> str:
-    """A number with its unit, lengths in millimetres."""
+    """A number with its unit; lengths are in millimetres."""
     return f"{1e3 * value:.3g} mm" if unit == "m" else f"{value:.3g} {unit}".rstrip()

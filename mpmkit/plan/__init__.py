@@ -1,4 +1,4 @@
-"""What a run costs, before it is run, and what cheaper models of it would cost and lose."""
+"""Cost of a run before it is run, and cost and error of cheaper models."""
 
 from .cheaper import Cheaper, cheaper_models
 from .cost import plan

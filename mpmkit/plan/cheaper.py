@@ -1,4 +1,4 @@
-"""Models of the same scene that cost less: each is a handful of changes to the case."""
+"""Cheaper models of the same scene: each is a few changes of the case."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from .symmetric_walls import are_turned
 from .symmetry import axis_of_revolution, planes_of_symmetry
 
 CELLS_HIGH = (30, 15)
-"""Cells that the scene is high, of the coarser models: those of the shipped study, whose errors are known."""
+"""Height of the scene in cells, for coarser models: values of the shipped study, with known errors."""
 FACTOR, MACH = 10.0, 0.1
-"""Sound speeds of the shipped study: a multiple of √(2 g h), and a Mach number that they keep."""
+"""Sound speeds of the shipped study: a multiple of √(2 g h), and a constant Mach number."""
 COARSER = 1.25
-"""How much wider the cells of a coarser model must be to be worth a line."""
+"""A coarser model is listed only if its cells are wider by this factor."""
 
 VECTORS = ("base", "centre", "point", "normal", "velocity", "amplitude", "positions")
 """Fields of surfaces, of their shapes and motions, that have a component for each axis."""
@@ -38,14 +38,14 @@ class Cheaper:
 
     name: str
     why: str
-    """what makes it admissible"""
+    """the reason why it is allowed"""
     changes: Changes
     """new values by their paths in the case, as ``--set`` takes them"""
     case: Case
 
     @property
     def options(self) -> list[str]:
-        """The changes as they are typed."""
+        """The changes as command line options."""
         return [
             f"{path}={value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)}"
             for path, value in self.changes.items()
@@ -53,7 +53,7 @@ class Cheaper:
 
 
 def cheaper_models(case: Case) -> list[Cheaper]:
-    """Each admissible change by itself, and the cheapest of every kind together."""
+    """Each allowed change alone, and the cheapest changes of all kinds together."""
     found: list[Cheaper] = []
     chosen: list[Cheaper] = []
     together = case
@@ -72,7 +72,7 @@ def cheaper_models(case: Case) -> list[Cheaper]:
 
 
 def _within(path: str, changes: Changes) -> bool:
-    """Whether a change is overwritten by one of others."""
+    """Whether another change replaces a change."""
     return any(path == other or path.startswith(f"{other}.") for other in changes)
 
 
@@ -87,7 +87,7 @@ def _models(case: Case, kind: Callable[[Case], Iterator[tuple[str, str, Changes]
         except (
             CaseError,
             PluginStop,
-        ):  # what the case asks for beside it does not go with it, such as an output along y
+        ):  # the change does not fit the rest of the case, e.g. an output along y
             continue
         axis = axis_of_revolution(case) if model.space != case.space else None
         if axis is None or are_turned(case, model, axis):
@@ -125,7 +125,7 @@ def _spaces(case: Case) -> Iterator[tuple[str, str, Changes]]:
 
 
 def _turned(body: Any) -> Changes:
-    """A body of revolution as the half plane has it."""
+    """A body of revolution in the half plane."""
     changes: Changes = {}
     for name in ("base", "centre"):
         if getattr(body.shape, name, None) is not None:
@@ -141,9 +141,9 @@ def _turned(body: Any) -> Changes:
 
 
 def _half_plane(surface: Any, vector: bool = False) -> Any:
-    """A surface as the half plane has it: of its vectors, in fields of these names, the part along z is left.
+    """A surface in the half plane: of its vectors, in fields of these names, the z component is kept.
 
-    ``are_turned`` sees whether it is then the same wall.
+    ``are_turned`` checks whether it is then the same wall.
     """
     if isinstance(surface, dict):
         return {key: _half_plane(part, key in VECTORS) for key, part in surface.items()}
@@ -206,6 +206,6 @@ def _laws(case: Case) -> Iterator[tuple[str, str, Changes]]:
 
 
 def _whole(lower: float, upper: float, dx: float) -> list[float]:
-    """Ends that are a whole number of cells apart, no closer than these."""
+    """An interval of a whole number of cells, not shorter than the given one."""
     cells = math.ceil((upper - lower) / dx - 1e-6)
     return [lower, float(f"{lower + cells * dx:.10g}")]

@@ -1,4 +1,4 @@
-"""What a run will cost, before it is run."""
+"""The cost of a run before it is run."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .pilot import Growth, pilot
 from .trial import Trial, trial
 
 PILOT_SECONDS = 10.0
-"""How long its coarse copy is run at the most, to see how the cost grows on the way."""
+"""Longest time of the coarse pilot run, which shows how the cost changes during the run."""
 WORTH_ADVICE = 10.0
-"""Seconds that a run takes at the least, for cheaper models to be looked at."""
+"""Cheaper models are considered only for runs of at least this many seconds."""
 WORTH_A_LINE = 0.8
-"""Part of the run's time that a cheaper model takes at the most."""
+"""A cheaper model may take at most this part of the run's time."""
 WORTH_A_PILOT = 1.0
-"""Seconds that a run takes at the least, for a pilot to be worth its own."""
+"""A pilot is run only for runs of at least this many seconds."""
 
 
 def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
@@ -56,14 +56,14 @@ def plan(case: Case, threads: int | None = None) -> dict[str, Any]:
 
 
 def _cheaper(case: Case, cost: dict[str, Any], threads: int | None) -> list[dict[str, Any]]:
-    """Cost of every cheaper model that is worth a line, measured as that of the case is."""
+    """Cost of every cheaper model that is listed, measured in the same way as for the case."""
     if cost["expected_seconds"] < WORTH_ADVICE:
         return []
     lines = []
     for model in cheaper_models(case):
         try:
             found = _cost(Simulation(model.case), threads)
-        except (CaseError, GuardStop):  # it cannot be run after all, and is no advice
+        except (CaseError, GuardStop):  # it cannot be run, so it is not listed
             continue
         if found["expected_seconds"] < WORTH_A_LINE * cost["expected_seconds"]:
             lines.append(
@@ -81,14 +81,14 @@ def _cost(simulation: Simulation, threads: int | None) -> dict[str, Any]:
 
 def _cost_of(simulation: Simulation) -> dict[str, Any]:
     case, particles = simulation.case, len(simulation.particles)
-    # What follows is of the scene at rest: the trial below moves it on.
+    # These values are for the initial state: the trial below advances the scene.
     limits, step, limited_by = simulation.limits, simulation.time_step, simulation.limited_by
     warnings = [*cautions(case), *forewarnings(case), *simulation.warnings()]
     remarks = simulation.remarks()
     if (end := ending(case.until)) is not None:
         remarks.append(f"{end}: steps, memory and time are those of a run to that time")
     if not math.isfinite(case.end / step):
-        raise CaseError(f"until is {case.end:g} s; in steps of {step:.3g} s that is more than can be counted")
+        raise CaseError(f"until is {case.end:g} s; in steps of {step:.3g} s the number of steps is too large")
     start = trial(simulation)
     growth = _growth(simulation, case.end / step * start.step)
     steps = math.ceil(case.end / step * growth.steps)
@@ -111,22 +111,22 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
 
 
 def _growth(simulation: Simulation, seconds: float) -> Growth:
-    """What a pilot says of particles and steps to come; nothing of a scene in which neither changes."""
+    """The growth of particles and steps from a pilot; no growth for a scene in which neither changes."""
     case = simulation.case
     follows = any(group.mach is not None for group in simulation.particles.groups)
     found = None
     if (case.scheme.splitting or follows or case.walls) and seconds > WORTH_A_PILOT:
-        # What grows on the way makes the run longer than this, and the end of the flow should be seen.
+        # Growth makes the run longer than this estimate, and the pilot should reach the end of the flow.
         found = pilot(case, min(PILOT_SECONDS, 2 * seconds))
     return found or Growth.unknown()
 
 
 def _mean_seconds(start: Trial, particles: int, growth: Growth, time_step: float) -> float:
-    """Seconds a step takes in the mean over a run, a + b N + c W + d R, with N particles: b N is what grows.
+    """Mean seconds per step of a run, a + b N + c W + d R, with N particles.
 
-    a, what a step costs whatever the number of particles, is told by the pilot, which has few. W is what the
-    walls have to do: a mould that is lifted is soon away from the material, and costs nothing from then on.
-    R redistributions are done in a step, as many in a second of the flow as in the pilot.
+    a, the cost of a step without particles, comes from the pilot, which has few. W is the load of the walls:
+    a lifted mould soon leaves the material and then costs nothing. R is the number of redistributions per
+    step; the number per second of flow is that of the pilot.
     """
     if growth.of_the_case:
         return growth.seconds_per_step

@@ -1,7 +1,8 @@
-"""The error to expect of a model: that of the member of the shipped study which differs from it in nothing.
+"""The expected error of a model: that of the same model in the shipped study.
 
-The study is of one slump (docs/accuracy_vs_cost.md), in ``slump_study.json``. Its axes are space, cells,
-shape, order, volumetric treatment, law and sound speed; if anything else differs, it knows nothing of a case.
+The study varies one slump (docs/accuracy_vs_cost.md), in ``slump_study.json``. Its axes are space, cells,
+shape, order, volumetric treatment, law and sound speed. If a case differs in anything else, no error is
+known.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ from ..case.resolved import resolved
 from ..errors import CaseError
 
 SCHEMES = ("shape", "order", "volumetric")
-"""Kinds of plug-in that are axes of the study."""
+"""Kinds of plug-ins that are axes of the study."""
 NOT_OF_THE_FLOW = ("name", "description", "output", "until")
-"""Keys of a case that say how long it is watched, and what is written of it."""
+"""Keys of a case for the run time and the output."""
 
 
 def expected_error(case: Case) -> float | None:
-    """Largest departure of the spread from the reference in the first 1.5 s, as part of its largest value.
+    """Largest error of the spread in the first 1.5 s, relative to the largest value of the reference.
 
-    None if a key of the case differs from the study's base case that is no axis of the study, or if the study
-    has no such value on an axis. Cells count by how many the scene is high, finer ones than the study's as
-    its finest, which in 3-D are 20 mm with 8 particles a cell.
+    None if the case differs from the study's base case in a key that is not an axis of the study, or if the
+    study does not have its value on an axis. Cells are compared by the height of the scene in cells; finer
+    cells than in the study count as its finest, which in 3-D are 20 mm with 8 particles per cell.
     """
     dim = case.space_.dim
     cells = case.height / case.grid.cell_size * (1 + 1e-6)
@@ -49,7 +50,7 @@ def expected_error(case: Case) -> float | None:
 
 
 def _is_member(case: Case, place: dict[str, Any]) -> bool:
-    """Whether a case differs in nothing but cells, domain and sound speed from the member at a place."""
+    """Whether a case differs only in cells, domain and sound speed from a given member."""
     if None in place.values() or case.space not in _study()["models"]:
         return False
     member = copy.deepcopy(_study()["case"])
@@ -59,7 +60,7 @@ def _is_member(case: Case, place: dict[str, Any]) -> bool:
         assign(member, path, value)
     try:
         twin = parse_case(member)
-    except CaseError:  # of a plug-in that was left out
+    except CaseError:  # a plug-in is not installed
         return False
     ends = [np.array([c.grid.domain[axis] for axis in c.space_.axes]) for c in (case, twin)]
     wide_enough = (ends[0][:, 0] == ends[1][:, 0]).all() and (ends[0][:-1, 1] >= ends[1][:-1, 1]).all()
@@ -67,18 +68,18 @@ def _is_member(case: Case, place: dict[str, Any]) -> bool:
 
 
 def _flow(case: Case) -> dict[str, Any]:
-    """All that the flow depends on, apart from cells, domain and sound speed."""
+    """The content of the case that the flow depends on, except cells, domain and sound speed."""
     data = {key: value for key, value in resolved(case).items() if key not in NOT_OF_THE_FLOW}
     data["grid"] = {side: face for side, face in data["grid"]["faces"].items() if face != "open"}
     if case.space_.radial:
-        data["grid"].pop("r_min", None)  # the axis, whether it is named or not
+        data["grid"].pop("r_min", None)  # the axis of symmetry; naming it is optional
     for body in data["bodies"]:
         del body["material"]["sound_speed"]
     return data
 
 
 def _law(case: Case) -> str | None:
-    """The law as the study calls it, without its parameters."""
+    """The name of the law in the study, without its parameters."""
     laws = {body.material.law for body in case.bodies}
     names = {changes["bodies.0.material.law"]: name for name, changes in _study()["laws"].items()}
     return names.get(laws.pop()) if len(laws) == 1 else None

@@ -1,4 +1,4 @@
-"""How long the parts of a step take of which not every step has as many: walls, and redistributions."""
+"""Times of the parts that differ from step to step: walls and redistributions."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from ..solver.simulation import Simulation
 
 
 class PartClock:
-    """Times the walls and the redistribution of a simulation, whose results it does not change.
+    """Measures the time of walls and redistributions of a simulation, without an effect on its results.
 
-    What a redistribution asks of the walls is a part of it.
+    Work of walls for a redistribution counts to the redistribution.
 
     Attributes:
         walls: seconds that the walls have taken.
@@ -45,7 +45,7 @@ class PartClock:
 
     def _timed(self, method: Callable[..., Any], add: Callable[[float, Any], None]) -> Callable[..., Any]:
         def timed(*arguments: Any, **named: Any) -> Any:
-            if self._runs:  # called by another one
+            if self._runs:  # called by another timed function
                 return method(*arguments, **named)
             self._runs, begin = True, clock.perf_counter()
             try:

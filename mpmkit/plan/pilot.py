@@ -1,8 +1,8 @@
-"""A pilot: the same scene on coarse cells, run to its end to see how its cost grows on the way.
+"""A pilot: the same scene on coarse cells, run to its end to find how its cost grows.
 
-Particles that are split, steps that lengthen or shorten as the material flows, and the walls that it touches
-on the way cannot be known from the scene at rest; but they are the same, in proportion, on cells four or
-eight times as wide, at a small part of the cost.
+Splitting of particles, changes of the step, and contact with walls during the flow cannot be known from the
+initial state. But they are similar, in proportion, on cells four or eight times as wide, at a small part of
+the cost.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from .part_clock import PartClock
 from .wall_load import load
 
 FEW = {2: 250, 3: 1500}
-"""Particles of a pilot, by the number of dimensions, at about the most."""
+"""Approximate largest number of particles of a pilot, by the number of dimensions."""
 COARSEST = 3.0
-"""Cells that the scene is high, at least: with fewer there is no flow to learn from."""
+"""Least height of the scene in cells; with fewer cells, the flow is not realistic."""
 
 
 @dataclass(frozen=True)
 class Growth:
-    """What became of a pilot, over what it was at rest."""
+    """Results of a pilot, relative to its initial state."""
 
     steps: float
     """steps done over those that the first step's length would need"""
@@ -45,17 +45,17 @@ class Growth:
     mean_particles: float
     """number of particles, the mean over the steps"""
     seconds_of_parts: float
-    """of them those of walls and redistributions"""
+    """seconds of walls and redistributions, included above"""
     walls: float
-    """what its walls had to do, the mean over the steps, see ``wall_load``; as of the case's own cells"""
+    """mean load of its walls, see ``wall_load``; converted to the cells of the case"""
     redistributions: float
-    """how many there were in a second of the flow, 1/s"""
+    """redistributions per second of flow, 1/s"""
     of_the_case: bool
     """whether the pilot was the case itself, so that its seconds are those of the run"""
 
     @classmethod
     def unknown(cls) -> Growth:
-        """Nothing grows, as far as is known: without a pilot."""
+        """No growth; used without a pilot."""
         nan = math.nan
         return cls(1.0, 1.0, 1.0, nan, nan, nan, nan, nan, of_the_case=False)
 
@@ -63,7 +63,7 @@ class Growth:
 def pilot(case: Case, seconds: float) -> Growth | None:
     """Run a coarse copy of a case for at most ``seconds``; None if it diverges in its first half.
 
-    Where the seconds do not suffice, or a guard stops it later, what was seen up to then stands for the rest.
+    If the time is too short, or a guard stops it later, the results so far are used for the rest.
 
     Raises:
         PluginStop: a plug-in is at fault.
@@ -71,8 +71,8 @@ def pilot(case: Case, seconds: float) -> Growth | None:
     try:
         coarse = coarser(case)
         simulation = Simulation(coarse)
-        simulation.advance()  # loads what must be loaded
-    except PluginStop:  # it would fail in the run as well
+        simulation.advance()  # loads the compiled code
+    except PluginStop:  # the run would fail in the same way
         raise
     except MpmkitError:
         return None
@@ -109,7 +109,7 @@ def pilot(case: Case, seconds: float) -> Growth | None:
 
 
 def coarser(case: Case) -> Case:
-    """The case on cells so wide that it has few particles; the case itself if it has few as it is."""
+    """The case on cells so wide that it has few particles; the case itself if it already has few."""
     dim = case.space_.dim
     times = (expected_particles(case) / FEW[dim]) ** (1 / dim)
     times = min(times, case.height / COARSEST / case.grid.cell_size, _thinnest(case) / case.grid.cell_size)
@@ -121,17 +121,17 @@ def coarser(case: Case) -> Case:
     data["grid"]["cell_size"] = cell_size
     data["grid"]["domain"] = {axis: _whole(ends, cell_size) for axis, ends in data["grid"]["domain"].items()}
     data["output"] = {"report": False}
-    data["until"] = case.end  # a condition may be on what the output has measured
+    data["until"] = case.end  # an end condition may use measurements of the output
     return parse_case(data, source="its pilot")
 
 
 def _thinnest(case: Case) -> float:
-    """Thickness, m, of the thinnest wall; infinite if there is no wall. No cell may be larger than that."""
+    """Thickness, m, of the thinnest wall; infinite without walls. No cell may be larger."""
     with blaming_plugins(plugins_of(case)):
         surfaces = [audit.placed(wall.surface, case.space_) for wall in case.walls.values()]
         return min((surface.thickness for surface in surfaces), default=math.inf)
 
 
 def _whole(ends: list[float], cell_size: float) -> list[Any]:
-    """A domain that ends a little later, so that it is a whole number of cells wide."""
+    """A domain extended to a whole number of cells."""
     return [ends[0], ends[0] + cell_size * math.ceil((ends[1] - ends[0]) / cell_size - 1e-9)]

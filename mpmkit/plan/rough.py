@@ -1,4 +1,4 @@
-"""The time of a run from its case alone: rough, but at once, for many cases and without running any."""
+"""A rough estimate of the run time from the case alone, without running it."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ..solver.scene import material_group
 from ..solver.time_step import choose_step, limits
 
 STEP = 1e-4
-"""Seconds that a step takes beside its particles."""
+"""Seconds per step, without the cost of particles."""
 RATE = {2: 3e6, 3: 1e6}
-"""Particles that a core moves on by a step in a second, by the number of dimensions (docs/performance.md)."""
+"""Particle-steps per second and core, by the number of dimensions (docs/performance.md)."""
 
 
 def rough_seconds(case: Case, threads: int = 1) -> float:
-    """Seconds that a run takes, give or take a factor of three.
+    """Seconds that a run takes, within a factor of about three.
 
-    From the step at the start and the particles at the start: a sound speed that follows the flow, and
-    particles that are split, are left out.
+    The estimate uses the step and the particles at the start. It neglects sound speeds that follow the flow,
+    and splitting of particles.
     """
     groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
     materials = [(group, group.wave_speed) for group in groups]

@@ -1,10 +1,10 @@
-"""How long the shipped cases take on this machine, at once and without running any.
+"""Run times of the shipped cases on this machine, estimated without running them.
 
 ``shipped_work.csv`` holds the work of each case, the steps and the particle-steps of a run, which are the
-same on every machine; docs/figures/lab_pages.py writes it. What a step and a particle-step cost was measured
-on one machine, as CPU time of one thread, together with the ``benchmark`` below, which gathers and scatters
-as a step does: a processor that is twice as fast at it is taken to run a case in half of the time. Give or
-take a factor of two: ``mpmkit plan`` measures a case itself.
+same on every machine; docs/figures/lab_pages.py writes it. The costs of a step and of a particle-step were
+measured on one machine, as CPU time of one thread, together with the ``benchmark`` below, which gathers and
+scatters as a step does. A processor that is twice as fast in it is assumed to run a case in half of the time.
+The estimate is right within a factor of about two; ``mpmkit plan`` measures the case itself.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ import numpy as np
 
 FILE = Path(__file__).with_name("shipped_work.csv")
 STEP = 1.0e-3
-"""Seconds that a step takes beside its particles, of a scene with a wall or two."""
+"""Seconds per step, without the cost of particles, for a scene with one or two walls."""
 PARTICLE_STEP = {2: 0.9e-6, 3: 1.6e-6}
-"""Seconds for a particle in a step, by the number of dimensions."""
+"""Seconds per particle-step, by the number of dimensions."""
 BENCHMARK = 0.67e-3
 """Seconds of the benchmark on the machine on which these were measured."""
 PARTICLES, NODES, TRIES = 20_000, 2_000, 9
 
 
 def benchmark() -> float:
-    """Seconds, the least of some tries, for a fixed amount of work of the kind that a step is made of."""
+    """Seconds, the least of several tries, for a fixed amount of work similar to that of a step."""
     places = (np.arange(PARTICLES) * 7919) % NODES
     weights = np.linspace(0.1, 1.0, PARTICLES)
     best = np.inf

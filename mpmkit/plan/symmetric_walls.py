@@ -1,4 +1,4 @@
-"""Whether walls have the symmetry of a scene: found by what they are at points, whatever makes them."""
+"""Whether walls have the symmetry of a scene: checked at points, for any kind of surface."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..registry.blame import blaming_plugins
 
 POINTS = 400
 TIMES = 9
-"""Between the start and the end of a run; where a wall moves between two of them, once more in its motion."""
+"""Number of checked times of a run; if a wall moves between two of them, one more time is checked."""
 HALVINGS = 20
-"""Of the time between two of them, to find a moment at which it moves."""
+"""Parts of the time between two of them, to find a moment at which it moves."""
 ROUNDING = 1e-9
-"""Of distances over the extent of the domain, and of velocities over the fastest."""
+"""Tolerance of distances over the extent of the domain, and of velocities over the largest."""
 Map = Callable[[np.ndarray], np.ndarray]
-"""From points or vectors, (k, dim), to others."""
+"""A map of points or vectors, (k, dim)."""
 
 
 def are_mirrored(case: Case, middle: tuple[float, float]) -> bool:
@@ -65,7 +65,7 @@ def _same(case: Case, other: Case, place: Map, vector: Map) -> bool:
 
 
 def _moments(surface: AuditedSurface, until: float) -> list[float]:
-    """Times, s, at which a wall is looked at."""
+    """Times, s, at which a wall is checked."""
     times = np.linspace(0.0, until, TIMES).tolist()
     moving = [(a, b) for a, b in pairwise(times) if surface.fastest(a, b) > 0]
     return times + [_in_motion(surface, a, b) for a, b in moving]

@@ -1,4 +1,4 @@
-"""What symmetry a scene has: whether half of it, or a half plane, says all."""
+"""Symmetry of a scene: whether a quarter of it, or a half plane, is enough."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ SIDES = ("x_min", "x_max", "y_min", "y_max")
 
 
 def axis_of_revolution(case: Case) -> tuple[float, float] | None:
-    """Where the vertical axis stands about which a scene in 3-D turns, walls and motion included; None if it
-    does not, or is no scene in 3-D."""
+    """Position of the vertical axis about which a 3-D scene is axisymmetric, walls and motion included; None
+    if it is not, or is not a 3-D scene."""
     axis = _common_middle(case)
     if axis is None or not all(body.shape.turned for body in case.bodies):
         return None
@@ -25,7 +25,7 @@ def axis_of_revolution(case: Case) -> tuple[float, float] | None:
 
 
 def planes_of_symmetry(case: Case) -> tuple[float, float] | None:
-    """Where x = const and y = const cut a scene in 3-D into four equal quarters; None if they do not."""
+    """Position of planes x = const and y = const that cut a 3-D scene into four equal quarters; else None."""
     middle = _common_middle(case)
     if middle is None:
         return None

@@ -1,4 +1,4 @@
-"""What a step takes where a run begins: the scene itself, run for about a second."""
+"""Time of a step at the start of a run, measured by running the scene for about a second."""
 
 from __future__ import annotations
 
@@ -12,41 +12,41 @@ from .part_clock import PartClock
 from .wall_load import load
 
 TRIAL_SECONDS = 1.0
-"""How long the scene is run, after one step to compile."""
+"""Seconds for which the scene is run, after one step for compilation."""
 FORCED = 2
-"""Redistributions that are done to see what they take; the first also makes room for itself."""
+"""Redistributions that are timed; the first one also allocates memory."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """Seconds that a step takes, by what takes them."""
+    """Seconds of the parts of a step."""
 
     seconds: float
-    """beside walls and redistributions"""
+    """without walls and redistributions"""
     of_walls: float
     """of the walls"""
     load: float
-    """what the walls had to do, see ``wall_load``"""
+    """load of the walls, see ``wall_load``"""
     redistributing: float
     """of one redistribution"""
     redistributions: float
-    """how many there were in a step, in the mean"""
+    """mean number of redistributions per step"""
     stopped: list[str]
     """a warning, if a guard stopped the trial"""
 
     @property
     def step(self) -> float:
-        """Seconds of a whole step, in the mean."""
+        """Mean seconds of a whole step."""
         return self.seconds + self.of_walls + self.redistributions * self.redistributing
 
 
 def trial(simulation: Simulation) -> Trial:
-    """Run a scene for a while, and a warning if a guard stopped it as early as that.
+    """Run a scene for a short time; return a warning if a guard stopped it.
 
-    A step that is held up by something else on the machine is left out by the median. What walls do only in
-    every so many steps, such as to sort their nodes, counts in the mean.
+    The median excludes steps that were delayed by other processes. Work of walls that is done only every few
+    steps, such as sorting their nodes, is averaged by the mean.
     """
-    simulation.advance()  # compiles, or loads what was compiled
+    simulation.advance()  # compiles, or loads compiled code
     taken: list[float] = []
     parts, loads, stopped = PartClock(simulation), 0.0, []
     begin = clock.perf_counter()
@@ -74,7 +74,7 @@ def trial(simulation: Simulation) -> Trial:
 
 
 def _redistributing(simulation: Simulation, parts: PartClock) -> float:
-    """Seconds of a redistribution, done for its time alone: in the trial it may not have been due."""
+    """Seconds of a redistribution, made only to measure it: in the trial it may not have been due."""
     operations, before = simulation.operations, 0.0
     if not operations.stage.acts:
         return 0.0

@@ -1,4 +1,4 @@
-"""Page and pictures of a run, made from its directory alone, so that they can be made again at any time."""
+"""Page and pictures of a run. They need only its directory and can be made again at any time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The domain as a picture shows it."""
+"""The domain in a picture."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .run_results import RunResults
 
 
 def columns(results: RunResults) -> dict[str, int]:
-    """Where the coordinate along each axis of the scene stands in the positions of a frame."""
+    """Column of each axis of the scene in the positions of a frame."""
     return {axis: column for column, axis in enumerate(SPACES[results.case["space"]].axes)}
 
 
@@ -22,17 +22,17 @@ class Domain:
     lower: np.ndarray
     upper: np.ndarray
     period: tuple[float | None, float | None]
-    """Lengths after which the scene repeats itself; None along an axis that is not periodic."""
+    """Periods of the scene, m; None along an axis that is not periodic."""
     wall: tuple[tuple[bool, bool], tuple[bool, bool]]
     """Whether the lower and the upper end along each axis are walls."""
     mirror: float | None
-    """Where an axis or a plane of symmetry cut the scene in two: the other half is drawn as well."""
+    """Position of an axis or plane of symmetry; the other half of the scene is drawn as well."""
     floor: float | None
-    """Height of the floor; None where the lower face of the domain is no wall."""
+    """Height of the floor; None if the lower face of the domain is not a wall."""
 
 
 def domain_of(results: RunResults) -> Domain:
-    """The domain of a run, with what lies behind its plane of symmetry."""
+    """The domain of a run, including the part behind its plane of symmetry."""
     grid, axes = results.case["grid"], ("r" if results.case["space"] == "axisymmetric" else "x", "z")
     faces = grid.get("faces", {})
     lower, upper = np.array([grid["domain"][axis] for axis in axes], dtype=float).T
@@ -55,7 +55,7 @@ def domain_of(results: RunResults) -> Domain:
 
 
 def symmetry_plane(results: RunResults, axis: str) -> float | None:
-    """Where a plane of symmetry ends the domain along an axis, m; None if none does."""
+    """Position of a plane of symmetry at the end of the domain along an axis, m; None if there is none."""
     grid = results.case["grid"]
     for side, bound in zip(("min", "max"), grid["domain"][axis], strict=True):
         if grid.get("faces", {}).get(f"{axis}_{side}") == "symmetry":
@@ -64,7 +64,7 @@ def symmetry_plane(results: RunResults, axis: str) -> float | None:
 
 
 def inside(results: RunResults, position: np.ndarray) -> np.ndarray:
-    """Which of the positions ``(n, 3)`` are finite and in the domain, give or take a cell."""
+    """Which of the positions ``(n, 3)`` are finite and in the domain, extended by a cell."""
     grid, kept, column = results.case["grid"], np.isfinite(position).all(axis=1), columns(results)
     for axis, (low, high) in grid["domain"].items():
         along = position[:, column[axis]]

@@ -28,7 +28,7 @@ def draw(results: RunResults) -> Figure | None:
         label, colour = CURVES[name]
         axes.plot(results.time, values, color=colour, label=label)
     axes.set_ylim(bottom=min(0, axes.get_ylim()[0]) if min(map(np.nanmin, curves.values())) < 0 else 0)
-    # Outside: there is no corner that no curve of any case crosses.
+    # Outside the axes: in every corner, the curves of some case pass.
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
@@ -37,5 +37,5 @@ def _energy(results: RunResults, name: str) -> np.ndarray | None:
     values = results.series(name)
     if values is None or not np.nanmax(np.abs(values)):
         return None
-    # The zero of the potential energy is wherever the case put its axes; its lowest value says more.
+    # The zero of the potential energy depends on the axes of the case: use its lowest value instead.
     return values - np.nanmin(values) if name == "potential_energy" else values

@@ -1,7 +1,7 @@
-"""What lies between the boxes of neighbouring particles.
+"""The gaps between the boxes of neighbouring particles.
 
-Boxes whose size is fixed part as the material is drawn out, and the picture of a sound body would be one of
-stripes. Neighbours within a cell or so share nodes: to the grid they are one material, and so they are here.
+Boxes of constant size separate when the material is stretched, and a picture of an intact body would show
+stripes. Neighbours within about a cell share nodes: on the grid they are connected, so the gaps are filled.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the faces of a domain make of the material in front of them: mirror images, and the next period."""
+"""Images of the material behind the faces of a domain: mirror images, and the next period."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from .section import Section
 
 
 def beyond_faces(section: Section, domain: Domain, reach: float) -> Section:
-    """The section with images of what lies within ``reach``, m, of a face.
+    """The section with images of the material within ``reach``, m, of a face.
 
-    A box over a face of its own domain leaves a gap there, as it does between two particles that part;
-    with the images, the one is closed as the other is. They lie behind the face: a picture ends there.
+    Gaps can open between a particle and a face as between two particles. With the images, both are closed in
+    the same way. The images lie behind the face, where the picture ends.
     """
     for axis, period in enumerate(domain.period):
         ends = (float(domain.lower[axis]), float(domain.upper[axis]))
@@ -25,7 +25,7 @@ def beyond_faces(section: Section, domain: Domain, reach: float) -> Section:
             elif domain.wall[axis][side]:
                 images.append((near[side], 1 - 2 * np.eye(2)[axis], np.eye(2)[axis] * 2 * end))
         for of, factor, shift in images:
-            # Images come first: what is added shifts the material's own places.
+            # Images come first: additions shift the indices of the material.
             added = len(section) - len(of)
             section = section.with_image(np.append(np.zeros(added, dtype=bool), of), factor, shift)
     return section

@@ -23,9 +23,9 @@ from .wall_lines import Lines, draw_walls, legend_handles, looks, wall_lines
 
 DEFAULT_TIMES = (0.0, 0.1, 0.2, 0.5)
 AROUND, AROUND_WALLS = 0.04, 0.12
-"""What a panel shows around the material, as a part of its largest side; more where there may be walls."""
+"""Margin of a panel around the material, relative to its largest side; larger with walls."""
 FEWEST_DIGITS, MOST_DIGITS = 3, 12
-"""Decimals of a time; more than the fewest only where two panels would bear the same time."""
+"""Decimals of a time; more than the least only if two panels would show the same time."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Snapshot:
     time: float
     section: Section
     lengths: dict[str, float]
-    """spread and height, m, as far as they are known"""
+    """spread and height, m, if known"""
     walls: Lines
 
 
@@ -86,14 +86,14 @@ def chosen_frames(results: RunResults) -> list[tuple[float, Path]]:
     """The frames nearest to the snapshot times of the case that the run reached, and the last frame."""
     times = np.array([time for time, _ in results.frames])
     wanted = (results.case.get("output") or {}).get("snapshot_times", DEFAULT_TIMES)
-    # Half a frame's interval beyond the end is still the end.
+    # Up to half a frame interval after the end counts as the end.
     reach = times[-1] + (np.diff(times).min() / 2 if len(times) > 1 else 0)
     nearest = {int(np.argmin(np.abs(times - time))) for time in wanted if time <= reach}
     return [results.frames[index] for index in sorted(nearest | {len(times) - 1})]
 
 
 def _seen(walls: list[Lines], lower: np.ndarray, upper: np.ndarray) -> set[str]:
-    """The walls of which something is within the limits of a panel."""
+    """The walls that are partly within the limits of a panel."""
     return {
         name
         for lines in walls
@@ -115,9 +115,10 @@ def limits(sections: list[Section], domain: Domain, around: float) -> tuple[np.n
 
 
 def _colours(sections: list[Section], stopped_by_guard: bool) -> tuple[Normalize, str]:
-    """The scale of the speeds, and at which ends a speed may lie beyond it.
+    """The scale of the speeds, and the ends that speeds may exceed.
 
-    What a guard stopped has speeds at its end that would leave one colour for all that was before.
+    A run stopped by a guard can have such large final speeds that all earlier ones would have the same
+    colour.
     """
     fastest = [float(section.value.max()) if len(section) else 0.0 for section in sections]
     trusted = fastest[:-1] if stopped_by_guard and len(fastest) > 1 else fastest
@@ -138,7 +139,7 @@ def add_section(
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     rectangles = section.centre[:, None, :] + corners * section.half_size[:, None, :]
     between = triangles_between(section, cell_size)
-    # A triangle is a quadrilateral that has one corner twice; the boxes lie on top.
+    # A triangle is drawn as a quadrilateral with one corner twice; the boxes lie on top.
     triangles = section.centre[between[:, [0, 1, 2, 2]]]
     # A thin edge of its own colour closes the hairlines between neighbours.
     body = PolyCollection(
@@ -151,16 +152,16 @@ def add_section(
         zorder=2,
     )
     axes.add_collection(body)
-    # A box that reaches over a face stands for material in front of it.
+    # The part of a box behind a face is not drawn.
     width, height = (domain.upper - domain.lower) * MILLIMETRES
     corner = (domain.lower[0] * MILLIMETRES, domain.lower[1] * MILLIMETRES)
     body.set_clip_path(Rectangle(corner, width, height, transform=axes.transData))
-    body.set_in_layout(False)  # what is clipped needs no room beside the panel
+    body.set_in_layout(False)  # clipped parts need no space beside the panel
     return body
 
 
 def _digits(times: list[float]) -> int:
-    """Decimals that tell the times apart."""
+    """Decimals with which all times differ."""
     for digits in range(FEWEST_DIGITS, MOST_DIGITS):
         if len({f"{time:.{digits}f}" for time in times}) == len(times):
             return digits

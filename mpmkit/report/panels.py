@@ -1,4 +1,4 @@
-"""A grid of panels of the same limits and of equal aspect that leaves little of its page empty."""
+"""A grid of panels with the same limits and equal aspect that fills most of its page."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 WIDTH = 9.0
-"""Width of the page, inch, which narrow panels do not fill; all lengths here are in inch."""
+"""Width of the page, inch (narrow panels do not fill it); all lengths here are in inch."""
 HEIGHT = 11.0
 """Largest height of the page."""
 BETWEEN, AROUND = 0.6, 0.9
-"""Room for what is written at one panel, and at all of them."""
+"""Space for text at one panel, and at all of them."""
 NARROWEST = 1.9
-"""Room across for what is written above a panel, however narrow it is."""
+"""Least width for the text above a panel."""
 COLUMNS, NARROW_COLUMNS = 3, 4
-"""Most panels side by side, so that what is written above one keeps clear of the next."""
+"""Most panels in a row, so that their titles do not overlap."""
 PAD = 0.1
-"""Room above and below a panel and what is written at it."""
+"""Space above and below a panel and its text."""
 BAR = 1.0
 """Room for a colour bar at the side."""
 NAME, LINE = 1.6, 0.25
@@ -84,7 +84,7 @@ class Panels:
 
 
 def _page(count: int, columns: int, extent: np.ndarray) -> tuple[float, float]:
-    """Width and height of the page that ``columns`` panels side by side ask for."""
+    """Width and height of a page with ``columns`` panels in a row."""
     rows, empty = math.ceil(count / columns), -count % columns
     tallest = (HEIGHT - AROUND) / rows - BETWEEN
     width = min(WIDTH / columns - BETWEEN, tallest * extent[0] / extent[1])
@@ -96,7 +96,7 @@ def _page(count: int, columns: int, extent: np.ndarray) -> tuple[float, float]:
 
 
 def _badness(count: int, columns: int, extent: np.ndarray) -> float:
-    """How far a page is from 4:3, with a price on each empty place but the one that the colour bar takes."""
+    """Difference of a page from 4:3, plus a penalty for each empty place not used by the colour bar."""
     empty = -count % columns
     width, height = _page(count, columns, extent)
     return abs(math.log(width / height / (4 / 3))) + 0.5 * max(empty - 1, 0)

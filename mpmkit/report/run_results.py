@@ -1,4 +1,4 @@
-"""What a report is drawn from, read back from a run directory."""
+"""The data of a report, read from a run directory."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class RunResults:
     case: dict[str, Any]
     summary: dict[str, Any]
     history: xarray.Dataset
-    """Its rows but for the last of a run that a guard stopped: that one holds what the guard refused."""
+    """Its rows; without the last row if a guard stopped the run, because this row holds the refused state."""
     frames: Sequence[tuple[float, Path]]
     """Times, s, and files of the frames, in order of time."""
     walls: dict[float, dict[str, Path]]
@@ -37,7 +37,7 @@ class RunResults:
 
     @property
     def stopped_by_guard(self) -> bool:
-        """Whether the last state is one that must not be trusted."""
+        """Whether a guard stopped the run, so that its last state must not be trusted."""
         return not trusted_to_the_end(self.summary.get("stopped_because"))
 
     @property
@@ -46,7 +46,7 @@ class RunResults:
         return self.history["time"].values
 
     def series(self, name: str) -> np.ndarray | None:
-        """A scalar of the history; None if it is absent or holds no two rows to draw a line through."""
+        """A scalar of the history; None if it is missing or has fewer than two rows."""
         if name not in self.history:
             return None
         values = self.history[name].values

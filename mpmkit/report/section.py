@@ -13,7 +13,7 @@ from .domain import Domain, columns, inside, symmetry_plane
 from .run_results import RunResults
 
 NEEDED = ("position", "half_size", "body")
-"""Fields of a frame that a picture is drawn from, beside the one that it is coloured by."""
+"""Fields of a frame that a picture needs, besides the field of the colours."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Section:
     half_size: np.ndarray
     """``(n, 2)``, m."""
     value: np.ndarray
-    """``(n,)``, the field that it is coloured by, such as the speed, m/s."""
+    """``(n,)``, the field of the colours, such as the speed, m/s."""
     body: np.ndarray
     """``(n,)``, number of the body."""
 
@@ -54,8 +54,8 @@ class Section:
 def plane_of(results: RunResults) -> float | None:
     """The y, m, of the section through a 3-D scene; None for one that has no y.
 
-    It is the plane of symmetry, else the middle of the material at the start; where that cuts nothing, as
-    between two bodies, it is the plane through the nearest particles.
+    It is the plane of symmetry, or else the middle of the material at the start. If that plane cuts no
+    material, for example between two bodies, it is the plane through the nearest particles.
     """
     if results.case["space"] != "3d":
         return None
@@ -64,7 +64,7 @@ def plane_of(results: RunResults) -> float | None:
     plane = symmetry_plane(results, "y")
     if plane is None:
         plane = float(np.average(y, weights=frame["half_size"].prod(axis=1))) if len(y) else 0.0
-        plane = round(plane, 9)  # what is left of a sum of lengths that cancel
+        plane = round(plane, 9)  # removes rounding errors of sums that cancel
     away = np.abs(y - plane)
     if len(y) and away.min() > results.case["grid"]["cell_size"]:
         return float(y[np.argmin(away)])
@@ -76,15 +76,15 @@ def section_of(
 ) -> Section:
     """The section through a frame along y = ``plane``, m, or all of it where that is None.
 
-    ``field`` is the field of the frame that it is coloured by.
+    ``field`` is the field of the frame for the colours.
 
     Half a body, cut at its axis or at a plane of symmetry, is drawn whole. Particles that are not finite, or
-    have left the domain, are not drawn: a guard has stopped their run. Nothing may be left.
+    have left the domain, are not drawn: a guard has stopped their run. The section may be empty.
     """
     frame = drawable(path, results, field)
     if plane is not None:
         distance = np.abs(frame["position"][:, 1] - plane)
-        # Drawn from the farthest to the nearest, so that what the plane cuts lies on top.
+        # Drawn from the farthest to the nearest, so that particles cut by the plane are on top.
         order = np.argsort(-distance)
         drawn = order[distance[order] <= results.case["grid"]["cell_size"]]
         frame = {name: field[drawn] for name, field in frame.items()}
@@ -98,7 +98,7 @@ def section_of(
 
 
 def lengths_of(path: Path, results: RunResults) -> dict[str, float]:
-    """Spread diameter and height, m, of the material in a frame; what the scene does not have is left out.
+    """Spread diameter and height, m, of the material in a frame, as far as the scene has them.
 
     They are those of the history (``solver.measures``), which need not have a row at this time.
     """
@@ -128,8 +128,8 @@ def _ends(frame: dict[str, np.ndarray], results: RunResults, axis: str, column: 
 def drawable(path: Path, results: RunResults, field: str = "speed") -> dict[str, np.ndarray]:
     """The fields of a frame that a picture needs, of the particles that can be drawn.
 
-    A box that is longer than a cell does not say where material is: it is drawn one cell long, as it is
-    measured.
+    The ends of a box longer than a cell contain no material: the box is drawn one cell long, as in the
+    measured lengths.
     """
     needed = (*NEEDED, field)
     frame = {name: values for name, values in read_frame(path).items() if name in needed}

@@ -31,7 +31,7 @@ def draw(results: RunResults) -> Figure | None:
         axes.axhline(level, color=GREY, linewidth=1, linestyle=":", label=f"{level:.0f} mm")
         axes.axvline(t500, color=GREY, linewidth=1.2, linestyle="--")
         axes.plot([t500], [level], marker="o", markersize=6, color=BLUE, markeredgecolor="white")
-        # Half-way up stands clear of both curves: by then the spread is above, the height below.
+        # Half of the height is free of both curves: the spread is above it, the height below.
         right = t500 < 0.7 * results.time[-1]
         said = f"T500 = {t500:.3g} s"
         if lifted_later(results.summary):

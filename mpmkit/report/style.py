@@ -1,4 +1,4 @@
-"""The look that the pictures share."""
+"""The common style of the pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 DPI = 160
 MILLIMETRES = 1e3  # in a metre
 
-# Okabe and Ito's palette, told apart by colour-blind readers as well
+# Okabe and Ito's palette: colour-blind readers can distinguish it
 BLACK, ORANGE, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#009E73", "#0072B2", "#D55E00"
 GREY = "#767676"
 SKY, PINK = "#56B4E9", "#CC79A7"
@@ -44,7 +44,7 @@ _STYLE: dict[Any, Any] = {
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """Draw and save figures of this look inside the block; matplotlib's own settings come back after it."""
+    """Draw and save figures in this style inside the block; matplotlib's settings are restored after it."""
     with matplotlib.rc_context(_STYLE):
         yield
 

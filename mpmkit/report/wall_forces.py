@@ -1,4 +1,4 @@
-"""Picture: what the walls give to the material against time: force, and torque and power where they move."""
+"""Picture: force of the walls on the material against time, with torque and power if they move."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .style import GREY
 from .wall_lines import legend_handles, looks
 
 MOST = 8
-"""Walls that are drawn at the most, those with the largest forces: no more lines can be told apart."""
+"""Most walls that are drawn, those with the largest forces; more lines could not be distinguished."""
 NOTHING = 1e-6
-"""Part of the largest below which a quantity is rounding, and is not drawn."""
+"""A quantity below this part of the largest is rounding and is not drawn."""
 LOOKS = 8
-"""Frames in which it is looked for whether a wall turns."""
+"""Frames in which rotation of a wall is checked."""
 WIDTH, HEIGHT, AROUND = 7.2, 2.0, 1.1
 """Width of the page, height of a chart, and room for title, times and legend, inch."""
 
@@ -31,9 +31,10 @@ class Chart(NamedTuple):
 
 
 def draw(results: RunResults) -> Figure | None:
-    """A chart for each component of the force; for the torque where a wall turns, the power where one moves.
+    """A chart for each component of the force, for the torque if a wall turns, and for the power if one
+    moves.
 
-    None where the case has no walls, or its history not two rows to draw a line through.
+    None if the case has no walls, or its history fewer than two rows.
     """
     if not results.case.get("walls") or "wall_force" not in results.history or len(results.time) < 3:
         return None
@@ -68,7 +69,7 @@ def draw(results: RunResults) -> Figure | None:
 
 
 def chosen_of(charts: list[Chart]) -> tuple[list[int], int]:
-    """The walls that are drawn, in their order, and how many others act on the material as well."""
+    """The walls that are drawn, in their order, and the number of other walls that act on the material."""
     shares = [np.abs(values).max(axis=0) / np.abs(values).max() for _, values in charts]
     largest = np.max(shares, axis=0)
     acting = np.flatnonzero(largest > NOTHING)
@@ -115,7 +116,7 @@ def _turning(results: RunResults) -> set[str]:
 
 
 def _rate(points: np.ndarray, parts: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Angular velocity ω, rad/s, (3,), with which v - v̄ = ω × (x - x̄) fits best; 0 where it is rounding."""
+    """Angular velocity ω, rad/s, (3,), for the best fit of v - v̄ = ω × (x - x̄); 0 if it is rounding."""
     arm, own = points - points.mean(axis=0), velocity - velocity.mean(axis=0)
     if not np.abs(own).max() > NOTHING * np.abs(velocity).max():
         return np.zeros(3)

@@ -20,16 +20,16 @@ from .style import FACE_COLOURS, MILLIMETRES, WALL_COLOURS
 WIDTHS = (1.8, 0.9)
 """Widths of lines, points: those of the first walls, and of others that have the same colours."""
 ASIDE = 1e-6
-"""Cells by which a section is beside its plane: what ends at a plane of symmetry is cut as well."""
+"""Distance of a section from its plane, in cells, so that walls that end at a plane of symmetry are cut."""
 
 Lines = dict[str, np.ndarray]
 """Segments by wall, m, (s, 2, 2): their ends along (horizontal, vertical)."""
 
 
 def wall_lines(results: RunResults, time: float, plane: float | None, domain: Domain) -> Lines:
-    """The walls that are there at the time of a frame, s, in the section along y = ``plane``, m.
+    """The walls present at the time of a frame, s, in the section along y = ``plane``, m.
 
-    What a plane of symmetry cuts is drawn whole, as the material is.
+    Parts cut by a plane of symmetry are drawn whole, like the material.
     """
     found = {}
     for name, path in results.walls.get(time, {}).items():
@@ -63,11 +63,11 @@ def draw_walls(axes: Axes, lines: Lines, looks: dict[str, dict[str, Any]]) -> No
     for name, segments in lines.items():
         drawn = LineCollection([*(segments * MILLIMETRES)], capstyle="round", zorder=3, **looks[name])
         axes.add_collection(drawn, autolim=False)
-        drawn.set_in_layout(False)  # what reaches beyond the panel needs no room beside it
+        drawn.set_in_layout(False)  # parts outside the panel need no space beside it
 
 
 def legend_handles(looks: dict[str, dict[str, Any]], shown: set[str]) -> list[Line2D]:
-    """What a legend says of the walls that are ``shown``."""
+    """Legend entries of the walls that are ``shown``."""
     return [Line2D([], [], label=name, **look) for name, look in looks.items() if name in shown]
 
 
@@ -82,7 +82,7 @@ def _cut(points: np.ndarray, parts: np.ndarray, plane: float) -> np.ndarray:
     across = [points[:, [0, vertical]][parts], y[parts]]
     cut = (across[1] >= 0).any(axis=1) & (across[1] < 0).any(axis=1)
     places, off = across[0][cut], across[1][cut]
-    # The corner that lies alone on its side comes first: the plane cuts the edges from it to the two others.
+    # The corner that is alone on its side comes first: the plane cuts the edges from it to the two others.
     above = off >= 0
     alone = np.argmax(above == (above.sum(axis=1) == 1)[:, None], axis=1)
     order = (alone[:, None] + np.arange(3)) % 3

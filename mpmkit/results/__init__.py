@@ -1,4 +1,4 @@
-"""A run that has been made, opened from its directory for Python and notebooks."""
+"""A finished run, opened from its directory in Python and notebooks."""
 
 from .progress import progress_bar
 from .run import Run, open_run

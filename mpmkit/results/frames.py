@@ -1,4 +1,4 @@
-"""The frames of a run as one xarray dataset, of which a file is read when its values are asked for."""
+"""The frames of a run as one xarray dataset; a file is read when its values are needed."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 COUNT = re.compile(rb'NumberOfPoints="(\d+)"')
 HEAD = 4096
-"""Bytes at the begin of a file in which the number of its particles stands."""
+"""Bytes at the start of a file that contain the number of its particles."""
 KEPT = 4
-"""Frames that are kept in memory: the fields of one time are often asked for one after the other."""
+"""Frames kept in memory: programs often read all fields of one time one after the other."""
 FROM_VTK = [0, 1, 2, 4, 5, 3]
 """Components of a tensor of VTK, xx, yy, zz, xy, yz, xz, in mpmkit's order."""
 OTHERS = {
@@ -42,8 +42,8 @@ def open_frames(
 ) -> xarray.Dataset:
     """The frames as a dataset with the dimensions time, particle and component.
 
-    Particles stand at their numbers, as in a history: one that is not there at a time, since it was split off
-    later or has been merged, is not a number.
+    The index along ``particle`` is the number of the particle, as in a history. Values are NaN at times when
+    a particle does not exist: it was split off later or was merged before.
 
     Args:
         files: times, s, and files, in order of time.
@@ -81,21 +81,21 @@ def open_frames(
 def _trailing(
     name: str, field: np.ndarray, about: ParticleVariable, space: Space
 ) -> tuple[tuple[str, ...], list[int] | None]:
-    """Dimensions after time and particle, and the columns of the file that stand along them."""
+    """Dimensions after time and particle, and the columns of the file along them."""
     if field.ndim == 1:
         return (), None
     if about.trailing == ("tensor_component",):
         return about.trailing, FROM_VTK
     if about.trailing == ("component",):
-        return about.trailing, list(range(space.dim))  # in a plane, the file has a zero behind
+        return about.trailing, list(range(space.dim))  # in 2-D, the file has a zero as third component
     return (f"{name}_component",), list(range(field.shape[1]))
 
 
 def _numbers(paths: Sequence[Path]) -> int:
     """One more than the largest number of a particle.
 
-    Where all frames have as many particles as numbers, none was added: the first and the last one tell. Else
-    all frames are looked at.
+    If the first and the last frame have as many particles as numbers, no particle was added. Otherwise all
+    frames are read.
     """
     counts = {_count(path) for path in paths}
     ends = [_largest(path) for path in (paths[0], paths[-1])]
@@ -122,7 +122,7 @@ def _loaded(path: Path, _written: int) -> dict[str, np.ndarray]:
 
 
 class _Field(BackendArray):
-    """A field of all frames; xarray asks it for the part that is needed."""
+    """A field of all frames; xarray reads the part that is needed."""
 
     def __init__(
         self, paths: Sequence[Path], name: str, shape: tuple[int, ...], columns: list[int] | None

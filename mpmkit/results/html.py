@@ -14,7 +14,7 @@ from ..output.run_directory import PICTURES
 from ..output.summary import state_at_end
 
 SHOWN = PICTURES[:2]
-"""Pictures that are shown: the shape and how it came about."""
+"""Pictures that are shown: the final shape, and the shapes before it."""
 DPI = 90
 LEFT, WIDE = 'style="text-align: left"', 'style="max-width: 48em; width: 100%"'
 FIGURES = {
@@ -26,7 +26,7 @@ FIGURES = {
     "steps": ("steps", 1.0, ""),
     "wall_time": ("wall time", 1.0, "s"),
 }
-"""By their keys in the summary: label, scale and unit."""
+"""Label, scale and unit of each result, by its key in the summary."""
 
 
 def run_html(directory: Path, name: str, summary: dict[str, Any]) -> str:
@@ -49,7 +49,7 @@ def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _pictures(directory: Path) -> Iterator[str]:
-    """Pictures of the report; where the run has none, its shape is drawn now."""
+    """Pictures of the report; if the run has none, its shape is drawn now."""
     there = [path for name in SHOWN if (path := RunDirectory(directory).report / f"{name}.png").is_file()]
     for content in [path.read_bytes() for path in there] or _drawn(directory):
         yield f'<img alt="" {WIDE} src="data:image/png;base64,{b64encode(content).decode()}">'

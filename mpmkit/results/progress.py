@@ -9,7 +9,7 @@ from typing import Any
 from ..running.execution import Listener, Progress
 
 FIFTY = 50
-"""Letters of the bar on a terminal."""
+"""Characters of the bar on a terminal."""
 
 
 def progress_bar(name: str = "run") -> Listener:
@@ -18,14 +18,14 @@ def progress_bar(name: str = "run") -> Listener:
     >>> mpmkit.run(case, listen=mpmkit.progress_bar())
 
     Args:
-        name: what stands beside the bar.
+        name: text beside the bar.
     """
     return _Notebook(name) if _in_notebook() else _Terminal(name)
 
 
 def _in_notebook() -> bool:
-    """Whether a notebook runs this; the shell of IPython on a terminal is none."""
-    ipython = sys.modules.get("IPython")  # where there is a notebook, it is loaded
+    """Whether the code runs in a notebook; IPython in a terminal does not count as one."""
+    ipython = sys.modules.get("IPython")  # a notebook always loads it
     shell = None if ipython is None else ipython.get_ipython()
     return type(shell).__name__ == "ZMQInteractiveShell"
 

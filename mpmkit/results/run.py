@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Run:
-    """A run in its directory, read as it is asked for. A notebook shows its figures and its pictures.
+    """A run in its directory. Files are read when they are needed. A notebook shows its results and pictures.
 
     >>> run = mpmkit.open_run("runs/slump")
     >>> run.summary["t500"]
@@ -40,7 +40,7 @@ class Run:
 
     @cached_property
     def case(self) -> Case:
-        """The case, with everything that it left to a default."""
+        """The case, with all default values filled in."""
         return load_case(RunDirectory(self.directory).case)
 
     @cached_property

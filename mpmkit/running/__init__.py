@@ -1,1 +1,1 @@
-"""A run from its case to its run directory: start, steps, records, checkpoints, and how it may end."""
+"""A run from its case to its run directory: start, steps, records, checkpoints, and end."""

@@ -1,4 +1,4 @@
-"""The files that a case names: what they hold, and the case that names copies of them instead."""
+"""The files that a case names: their content, and the case with the paths of copies."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ class NamedFile:
     """A file that a case names."""
 
     at: str
-    """place in the case of the shape that names it, such as ``bodies.0.shape``"""
+    """path in the case of the shape that names it, such as ``bodies.0.shape``"""
     shape: Shape
     field: str
     """of the shape"""
     name: str
-    """of its copy, made from what it holds"""
+    """name of its copy, made from its content"""
 
     @property
     def where(self) -> str:
-        """Place in the case, such as ``bodies.0.shape.file``."""
+        """Path in the case, such as ``bodies.0.shape.file``."""
         return f"{self.at}.{self.field}"
 
     @property
@@ -37,10 +37,10 @@ class NamedFile:
         return Path(getattr(self.shape, self.field)).absolute()
 
     def content(self) -> bytes:
-        """What its copy holds.
+        """The content of its copy.
 
         Raises:
-            CaseError: the file cannot be read, or no longer holds what it did.
+            CaseError: the file cannot be read, or its content has changed.
         """
         content = self.shape.content(self.field)
         if name_by_content(content, Path(self.name).suffix) != self.name:
@@ -74,9 +74,9 @@ def _shapes(case: Case) -> dict[str, Shape]:
 
 
 def portable(case: Case) -> dict[str, Any]:
-    """The resolved case as it stands in a run directory, which has copies of the files that it names.
+    """The resolved case for a run directory, which contains copies of the files that it names.
 
-    They are called by what they hold: where the originals lie makes no difference, what is in them does.
+    Copies are named by their content: the place of the originals makes no difference, their content does.
 
     Raises:
         CaseError: a file cannot be read.
@@ -88,7 +88,7 @@ def portable(case: Case) -> dict[str, Any]:
 
 
 def from_copies(case: Case, files: list[NamedFile], directory: Path) -> Case:
-    """The case that names, instead of ``files``, their copies in a directory; its numbers are the same."""
+    """The case with the paths of copies in a directory instead of ``files``; its numbers are the same."""
     shapes = _shapes(case)
     for file in files:
         copy = str(directory.absolute() / file.name)

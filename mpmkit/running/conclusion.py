@@ -18,13 +18,13 @@ from .recorder import Recorder
 
 LOGGER = logging.getLogger("mpmkit")
 FRACTURED = 0.05
-"""Part of the volume drawn apart that is worth a warning."""
+"""Part of the volume in stretched particles that gives a warning."""
 CREATED = 0.02
 """Created energy of solids, relative to the available energy, above which a warning is given."""
 
 
 def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
-    """Write everything that is known at the end of a run.
+    """Write the final results of a run.
 
     Raises:
         OutputError: where it cannot be written.
@@ -41,10 +41,10 @@ def conclude(recorder: Recorder, ended: str, wall_time: float) -> None:
 
 
 def salvage(recorder: Recorder, ended: str, wall_time: float) -> None:
-    """Write what can be written of a run that ended badly; nothing of it hides why it did.
+    """Write the available results of a failed run; errors here do not hide the cause of the failure.
 
-    Part by part: a plug-in that fails may fail again when its energies are asked for, and a summary may fit
-    on a disk that has no room for the history.
+    Each part is written separately: a failed plug-in may fail again when its energies are computed, and a
+    summary may fit on a disk that is too full for the history.
     """
     summary: dict[str, Any] = {}
     for part in (

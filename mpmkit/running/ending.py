@@ -1,4 +1,4 @@
-"""The end of a run before its time: the scene is at rest, or a variable of the history is far enough."""
+"""The early end of a run: the scene is at rest, or a variable of the history has reached its bound."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ from .milestones import LOOKS, Milestones
 KEPT = 2e-4
 """Change of a length at rest, as a part of the height of the bodies at the start: 0.06 mm of 300 mm."""
 PART = 0.25
-"""Last part of the run so far in which nothing longer has changed."""
+"""Last part of the run so far in which lengths must not have changed."""
 
 
 class Ending:
-    """Looks whether the run is to end, every ``milestones.LOOKS`` steps; ``watch`` is called after each step.
+    """Checks every ``milestones.LOOKS`` steps whether the run must end; ``watch`` is called after each step.
 
     **At rest** a run ends where the material is at rest as ``Milestones`` says, and where, for the last
     quarter of the run so far, the spread diameter, the height and the centre of mass have each stayed
-    within a band of ``KEPT`` h, with h the height of the bodies at the start. The band tells creep from rest:
-    what creeps at a steady rate leaves it, unless it would take four times the run so far to creep by
-    4 ``KEPT`` h. An elastic wobble stays in it, though its speed is not zero. No wall that stands
-    may have yet to move, and none that holds the material may have yet to vanish.
+    within a band of ``KEPT`` h, with h the height of the bodies at the start. The band separates creep from
+    rest: material that creeps at a constant rate leaves it, unless it needs four times the run so far to
+        creep by
+    4 ``KEPT`` h. Small elastic oscillations stay in it, although their speed is not zero. The run does not
+    end while a wall at rest will still move, or a wall that holds the material will still vanish.
 
     Attributes:
-        ended: ``at-rest``, ``condition``, or an empty text as long as the run goes on.
-        why: which condition has been met, in words; empty where none has.
+        ended: ``at-rest``, ``condition``, or an empty text as long as the run continues.
+        why: the condition that was met, in words; else empty.
     """
 
     def __init__(self, simulation: Simulation, milestones: Milestones) -> None:
@@ -45,13 +46,13 @@ class Ending:
         return plain_state(self)
 
     def restore(self, state: State) -> None:
-        """Go on from them; a run that is to last longer has not ended."""
+        """Restore them; a run that is made longer has not ended."""
         restore_plain(self, state)
         if self._until is None and not self._simulation.drains.emptied:
             self.ended = self.why = ""
 
     def watch(self) -> None:
-        """Look at the present step, where it is due."""
+        """Check the present step, if a check is due."""
         simulation = self._simulation
         if simulation.drains.emptied:
             self.ended, self.why = CONDITION, simulation.drains.emptied
@@ -83,7 +84,7 @@ class Ending:
         along = grid.periodic.copy()
         along[0] |= simulation.case.space_.radial  # the centre is on the axis
         lengths = np.array([measures.spread(p), measures.height(p), *centre[~along]])
-        return np.nan_to_num(lengths)  # what is periodic has no spread
+        return np.nan_to_num(lengths)  # no spread along a periodic axis
 
     def _a_wall_has_yet_to_move(self) -> bool:
         time, end = self._simulation.time, self._simulation.case.end

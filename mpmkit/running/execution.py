@@ -1,4 +1,4 @@
-"""A run from its present state to its end: steps, rows, frames and checkpoints, and how it may end before."""
+"""A run from its present state to its end: steps, rows, frames, checkpoints, and early ends."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ TOLD_EVERY = 0.2
 
 @dataclass(frozen=True)
 class Progress:
-    """What a progress display is told, a few times a second."""
+    """Data for a progress display, a few times per second."""
 
     time: float
     until: float
-    """s, the end of the run, at the latest"""
+    """s, latest end of the run"""
     ends_earlier: bool
-    """whether it may end before"""
+    """whether it may end earlier"""
     steps: int
     particle_steps_per_second: float
     seconds_left: float
@@ -49,7 +49,7 @@ Listener = Callable[[Progress], None]
 
 
 class _HeldInterrupt(KeyboardInterrupt):
-    """An interrupt that waited for the end of a step: the state is whole."""
+    """An interrupt that waited for the end of a step: the state is complete."""
 
 
 def execute(
@@ -58,7 +58,7 @@ def execute(
     """Advance the simulation of a recorder to its end, and write how it ended.
 
     Returns:
-        Whether an interrupt came too late to stop the run, so that what is left to do should not take long.
+        Whether an interrupt came too late to stop the run; the remaining work should then be short.
 
     Raises:
         GuardStop: it diverged, or a plug-in raised an exception.
@@ -126,8 +126,8 @@ def _announce(simulation: Simulation, threads: int) -> None:
 
 
 def _first_step(recorder: Recorder, saver: Saver | None) -> None:
-    """It loads or compiles the kernels, and is no part of the wall time; an interrupt ends it at once."""
-    if not _over(recorder):  # as a run is whose last checkpoint is of its last step
+    """Load or compile the kernels; this does not count as wall time, and an interrupt ends it at once."""
+    if not _over(recorder):  # true for a run whose last checkpoint is of its last step
         recorder.record()
         _step(recorder, saver)
 
@@ -173,9 +173,10 @@ def _over(recorder: Recorder) -> bool:
 
 
 def _step(recorder: Recorder, saver: Saver | None) -> None:
-    """One step and its records, and the last checkpoint, from which the run can go on beyond its end.
+    """One step with its records, and the last checkpoint, from which the run can be made longer.
 
-    The last step is cut short to end with the run. A longer run does not cut it, and goes on from before it.
+    The last step is shortened to end with the run. A longer run does not shorten it and continues from before
+    it.
     """
     simulation = recorder.simulation
     simulation.prepare()

@@ -1,4 +1,4 @@
-"""What a run keeps of its flow for the player of its page: few particles, few moments, chosen as it goes."""
+"""The flow data for the player of the page: few particles and few moments, selected during the run."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from ..solver.simulation import Simulation
 from ..solver.stateful import State, plain_state, restore_plain
 
 MOMENTS = 100
-"""Moments that are kept at the most."""
+"""Most moments that are kept."""
 LOOKS = 400
-"""Moments of a run that are looked at."""
+"""Moments of a run that are checked."""
 PARTICLES = 5000
-"""Particles of a moment that are kept, about; all of them where there are fewer."""
+"""Approximate number of particles kept of a moment; all if there are fewer."""
 GOLDEN = (5**0.5 - 1) / 2
 STANDSTILL = 0.15
-"""Change that a whole run of material at rest counts for."""
+"""Change assigned to a whole run of material at rest."""
 LEAST = 0.009
-"""Change from which a moment is worth being kept: to take one costs as much as a step of a few particles."""
+"""Least change for a new moment; a moment costs as much as a step of a few particles."""
 
 
 class FlowRecord:
-    """Moments of the flow, closer together where much moves.
+    """Moments of the flow, closer together in time when the material moves fast.
 
-    Between two moments lies a *change*: the RMS displacement of the particles over the height of the bodies,
-    and a small part for the time that passes. A look keeps a moment if the change since the last one may be
-    ``LEAST``, by the RMS speed; where there are too many moments, the one goes that has the least change
-    around it. Which particles are kept depends on their numbers alone, and those are spread
+    The *change* between two moments is the RMS displacement of the particles over the height of the bodies,
+    plus a small part for the elapsed time. A check keeps a moment if the change since the last one, estimated
+    by the RMS speed, may be ``LEAST``. If there are too many moments, the one with the least change around it
+    is removed. Which particles are kept depends on their numbers alone, and those are spread
     evenly: a particle has the same number through the run, and what a split adds is thinned as the rest.
     """
 
@@ -56,7 +56,7 @@ class FlowRecord:
         return found | {f"moments/{name}": array for name, array in arrays_of(self.moments).items()}
 
     def restore(self, state: State) -> None:
-        """Go on after them."""
+        """Restore them."""
         restore_plain(self, state)
         self._changes = state["changes/"].tolist()
         moments = {name.partition("/")[2]: array for name, array in state.items() if "moments/" in name}
@@ -69,12 +69,12 @@ class FlowRecord:
         if self.moments:
             passed = simulation.time - self.moments[-1].time
             moved = max(before, self._speed) * passed / self._height
-            if moved + STANDSTILL * passed / self._until < LEAST:  # what is not a number is kept
+            if moved + STANDSTILL * passed / self._until < LEAST:  # NaN is kept
                 return
         self.add(simulation)
 
     def add(self, simulation: Simulation) -> None:
-        """Add the present step, unless it is there; another moment may go for it."""
+        """Add the present step if it is new; another moment may be removed for it."""
         if self._last == simulation.steps:
             return
         self._last = simulation.steps
@@ -105,7 +105,7 @@ class FlowRecord:
         return moment_of(simulation.time, self._share, fields)
 
     def _kept(self, number: np.ndarray) -> np.ndarray:
-        """Which particles are kept, of their numbers; splits may make so many that it is a smaller share."""
+        """Which particles are kept, by their numbers; after many splits, a smaller share is kept."""
         if self._share * len(number) > 2 * PARTICLES or not self.moments:
             self._share = min(1.0, PARTICLES / len(number))
         return (number * GOLDEN) % 1.0 < self._share
@@ -121,7 +121,7 @@ class FlowRecord:
         with np.errstate(over="ignore", invalid="ignore"):
             moved = b - a
             rms = np.sqrt(np.einsum("pi,pi->", moved, moved) / max(len(moved), 1))
-        # What diverges has no displacement: its moments stay, since a guard is about to stop the run.
+        # A diverging run has no finite displacement: keep its moments; a guard will stop the run.
         return STANDSTILL * passed + (float(rms) / self._height if np.isfinite(rms) else 1.0)
 
     def _drop_the_least(self) -> None:
@@ -132,5 +132,5 @@ class FlowRecord:
 
 
 def _owned(moment: Moment) -> Moment:
-    """The moment with arrays of its own: those of a state may be views of it."""
+    """The moment with copies of its arrays: arrays of a state may be views."""
     return replace(moment, **{name: getattr(moment, name).copy() for name in TYPES})

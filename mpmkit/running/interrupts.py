@@ -1,4 +1,4 @@
-"""Ctrl-C, and the signals by which batch systems end a run, held back until a step is done."""
+"""Ctrl-C and the signals of batch systems, delayed until a step is done."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 OF_BATCH_SYSTEMS = tuple(
     getattr(signal, name)
     for name in ("SIGTERM", "SIGHUP", "SIGXCPU", "SIGUSR1", "SIGUSR2")
-    if hasattr(signal, name)  # Windows has the first alone
+    if hasattr(signal, name)  # Windows has only the first
 )
-"""What a process gets whose time is up, whose terminal is gone, or that is warned of its end."""
+"""Signals for a process whose time is over, whose terminal was closed, or that will be ended soon."""
 SIGNALS = (signal.SIGINT, *OF_BATCH_SYSTEMS)
 
 
 def take_signals_as_interrupts() -> None:
-    """Let the signals of batch systems do what Ctrl-C does; what is ignored, as by nohup, stays ignored."""
+    """Treat the signals of batch systems like Ctrl-C; ignored signals, e.g. by nohup, stay ignored."""
     for number in OF_BATCH_SYSTEMS:
         if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
@@ -26,10 +26,10 @@ def take_signals_as_interrupts() -> None:
 
 @contextmanager
 def held_interrupts() -> Iterator[Callable[[], bool]]:
-    """Inside the block a first interrupt waits to be asked for, and a second one interrupts.
+    """Inside the block, a first interrupt is only recorded, and a second one interrupts.
 
-    Yields a function that says whether one has come. A signal that the process ignores, or has a handler of
-    its own for, stays as it is; so do all of them outside the main thread.
+    Yields a function that tells whether an interrupt has come. A signal that the process ignores, or handles
+    itself, is not changed; outside the main thread, no signal is changed.
     """
     came: list[int] = []
 

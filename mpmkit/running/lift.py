@@ -1,4 +1,4 @@
-"""When the mould of a scene is lifted: T500 counts from there in a laboratory."""
+"""The time when the mould of a scene is lifted; a laboratory measures T500 from this time."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ DIGITS = 12
 def lift_start(case: Case) -> float | None:
     """Time, s, at which a wall of a case begins to move, the first of those that do; None if none moves.
 
-    Such a wall is taken for the mould: of a slump test nothing else moves. It is told by the fastest that a
-    surface says it is, so that any surface can be the mould.
+    Such a wall is taken as the mould: nothing else moves in a slump test. Motion is detected by the largest
+    speed that a surface reports, so that any surface can be the mould.
 
     Raises:
         PluginStop: a surface is at fault.
@@ -39,7 +39,7 @@ def lift_start(case: Case) -> float | None:
 def from_lift(t500: float | None, lifted: float | None) -> float | None:
     """T500 as EN 12350-8 counts it, s: from the start of the lift.
 
-    None where the spread never rises to 500 mm, where no wall moves, and where the lift starts later.
+    None if the spread never reaches 500 mm, if no wall moves, or if the lift starts later.
     """
     if t500 is None or lifted is None or t500 < lifted:
         return None

@@ -1,4 +1,4 @@
-"""What the measurements of a case look at: depth, front, and the forces of walls."""
+"""The functions for measurements of a case: depth, front, and the forces of walls."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ class _Look:
         width = float(grid.extent[1]) if grid.dim == 3 else 1.0
         volume = p.volume / (2 * np.pi * p.position[:, 0]) if space.radial else p.volume
         half = np.minimum(p.box[:, 0], grid.cell_size / 2)
-        # What of a box is beyond a face lies in front of it: no volume may be lost there.
+        # The part of a box behind a face is moved in front of it, so that no volume is lost.
         left = np.maximum(p.position[:, 0] - half, 0.0)
         right = np.minimum(p.position[:, 0] + half, float(grid.extent[0]))
         part = np.clip(np.minimum(right, high) - np.maximum(left, low), 0.0, None) / (right - left)
         return float((volume * part).sum() / ((high - low) * width))
 
     def front(self) -> float:
-        """How far the material reaches along the first axis, m; boxes count as in ``spread_diameter``."""
+        """End of the material along the first axis, m; boxes count as in ``spread_diameter``."""
         s = self._simulation
         p, grid = s.particles, s.grid
         ends = extents(p.position, p.box, 1, grid.extent, grid.periodic, grid.cell_size / 2)

@@ -1,7 +1,7 @@
-"""What happens once in a run, and when: the spread reaches 500 mm, the material comes to rest.
+"""Events of a run and their times: the spread reaches 500 mm, the material comes to rest.
 
-Both are watched in the steps themselves. The rows of the history have no part in it, so that a run that
-records less finds the same numbers.
+Both are checked in the steps and do not depend on the rows of the history, so that a run with fewer rows
+finds the same numbers.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from ..output.summary import T500_DIAMETER
 from ..solver.simulation import CONTROL_INTERVAL, Simulation
 
 LOOKS = CONTROL_INTERVAL
-"""Steps between two looks. Near the diameter of T500 every step is looked at: a look at every step of the
-whole run would take 3 % of it."""
+"""Steps between two checks. Near the diameter of T500 every step is checked; a check in every step of the
+whole run would take 3 % of its time."""
 AHEAD = 4.0
-"""Every step is looked at if the spread, growing as between the last two looks, has so many looks left."""
+"""Every step is checked if, at its present rate, the spread reaches 500 mm within this many checks."""
 SLOW = 1e-2
 """RMS speed at rest, as a part of the largest RMS speed so far: a 10,000th of the kinetic energy."""
 STILL = 2e-3
@@ -31,27 +31,27 @@ SMOOTHING = 0.02
 
 @dataclass
 class _Seen:
-    """What has been seen so far: numbers, so that a checkpoint can hold them."""
+    """The results of the checks so far, as numbers for a checkpoint."""
 
     time: float = math.nan
     """of the last step at which the spread was measured, s"""
     spread: float = math.nan
     """the spread diameter then, m"""
     close: float = 0.0
-    """1 where every step has to be looked at"""
+    """1 if every step must be checked"""
     t500: float = math.nan
     t500_step: float = math.nan
     look_time: float = math.nan
-    """of the last look, s"""
+    """time of the last check, s"""
     look_spread: float = math.nan
     fastest: float = 0.0
     """largest RMS speed so far, m/s"""
     rate: float = 0.0
     """rate of the spread diameter, m/s, averaged"""
     quiet_since: float = math.nan
-    """since when the material has been slow and kept its spread, s"""
+    """time since which the material has been slow and kept its spread, s"""
     band_since: float = math.nan
-    """since when the spread has been between the two that follow, s"""
+    """time since which the spread has been between the next two values, s"""
     band_low: float = math.inf
     band_high: float = -math.inf
 
@@ -62,11 +62,11 @@ class Milestones:
     **T500** is the time at which the spread diameter first rises to 500 mm, linear between two steps. A body
     that is so wide at the start has none.
 
-    **At rest** is what moves, and spreads, no more. With U the largest RMS speed of the particles that the
-    run has had, and h the height of the bodies at the start: the RMS speed is at most ``SLOW`` U, the spread
-    diameter changes by at most ``STILL`` h in a time of h / U, and both have been so for at least h / U. The
-    scales are the run's own, so that water and a stiff paste are judged alike; an elastic wobble of what has
-    come to rest is small enough to pass.
+    **At rest** means that the material does not move or spread any more. U is the largest RMS speed of the
+    particles so far, and h the height of the bodies at the start. The RMS speed must be at most ``SLOW`` U,
+    the spread diameter must change by at most ``STILL`` h in a time of h / U, and both for at least h / U.
+    These scales come from the run itself, so that water and a stiff paste are judged in the same way. Small
+    elastic oscillations of material at rest do not count as motion.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -74,7 +74,7 @@ class Milestones:
         self._seen = _Seen()
 
     def watch(self) -> None:
-        """Look at the present step, where it is due."""
+        """Check the present step, if a check is due."""
         due = self._simulation.steps % LOOKS == 0
         if due or self._seen.close:
             self._watch_spread()
@@ -82,16 +82,16 @@ class Milestones:
             self._look()
 
     def finish(self) -> None:
-        """Look at the last step."""
+        """Check the last step."""
         if self._simulation.steps % LOOKS:
             self._watch_spread()
             self._look()
 
     def t500(self, trusted: bool = True) -> float | None:
-        """T500, s; None if it never came.
+        """T500, s; None if the spread never reached 500 mm.
 
-        Where a guard stopped the run, not ``trusted``, it counts only up to the last step that the guards
-        looked at and let pass.
+        If a guard stopped the run (not ``trusted``), it counts only up to the last step that passed the
+        checks of the guards.
         """
         last_passed = (self._simulation.steps - 1) // CONTROL_INTERVAL * CONTROL_INTERVAL
         if math.isnan(self._seen.t500) or not (trusted or self._seen.t500_step <= last_passed):
@@ -100,22 +100,22 @@ class Milestones:
 
     @property
     def at_rest_since(self) -> float | None:
-        """Since when the material has been at rest, s; None while it moves."""
+        """Time since which the material has been at rest, s; None while it moves."""
         seen = self._seen
         lasted = seen.look_time - seen.quiet_since
         return seen.quiet_since if lasted * seen.fastest >= self._simulation.case.height else None
 
     @property
     def spreading(self) -> float | None:
-        """Rate at which the spread diameter grows at present, m/s; None where there is no spread."""
+        """Present growth rate of the spread diameter, m/s; None if there is no spread."""
         return None if math.isnan(self._seen.look_spread) else self._seen.rate
 
     def state(self) -> dict[str, np.ndarray]:
-        """What has been seen, for a checkpoint."""
+        """The results so far, for a checkpoint."""
         return {name: np.array(value) for name, value in vars(self._seen).items()}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Go on from what had been seen."""
+        """Restore the results so far."""
         self._seen = _Seen(**{name: float(value) for name, value in state.items()})
 
     def _watch_spread(self) -> None:
@@ -148,7 +148,7 @@ class Milestones:
             seen.quiet_since = seen.time
 
     def _keeps_its_spread(self) -> bool:
-        """Whether the spread is in the band where it was, or has left it slowly: then a new band begins."""
+        """Whether the spread is still in its band, or has left it slowly; then a new band begins."""
         seen, height = self._seen, self._simulation.case.height
         seen.band_low, seen.band_high = min(seen.band_low, seen.spread), max(seen.band_high, seen.spread)
         if seen.band_high - seen.band_low <= STILL * height:

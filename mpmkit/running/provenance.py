@@ -1,4 +1,4 @@
-"""What was run, with what, and where: the global attributes of a history."""
+"""The case, the software and the machine of a run: the global attributes of a history."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def plugins_used(case: Case) -> list[dict[str, str]]:
 
 
 def attributes(case: Case, threads: int) -> dict[str, str]:
-    """Global attributes of a history; what is structured is JSON."""
+    """Global attributes of a history; structured values are JSON."""
     machine = {
         "platform": platform.platform(),
         "processor": platform.processor() or platform.machine(),
@@ -49,7 +49,7 @@ def attributes(case: Case, threads: int) -> dict[str, str]:
 
 
 def log_lines(case: Case, threads: int) -> list[str]:
-    """What a log says at its beginning: the command, the versions, the plug-ins and the machine."""
+    """The first lines of a log: the command, the versions, the plug-ins and the machine."""
     said = attributes(case, threads)
     versions = [f"{name} {version}" for name, version in json.loads(said["versions"]).items()]
     plugins = [

@@ -1,4 +1,4 @@
-"""What a run remembers: rows of the history and frames, at the times that the case asks for."""
+"""The records of a run: rows of the history and frames, at the times given by the case."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from .wall_frames import WallFrames
 
 
 def measurement_columns(case: Case) -> tuple[Variable, ...]:
-    """The columns of what a case measures."""
+    """The columns of the measurements of a case."""
     return tuple(Variable(name, m.unit, m.description) for name, m in case.measurements.items())
 
 
 class Recorder:
     """Adds to the history of a simulation, and to its frames if it has a run directory.
 
-    A row or a frame is of the step that ends nearest to the time it is due: no step is shortened for it.
+    A row or a frame shows the end of the step nearest to its time; no step is shortened for it.
     """
 
     def __init__(
@@ -46,10 +46,10 @@ class Recorder:
     ) -> None:
         """
         Args:
-            simulation: what is recorded.
+            simulation: the simulation that is recorded.
             attributes: global attributes of the history.
-            directory: where the history and the frames are written; nothing is without one.
-            goes_on: whether ``restore`` is called next, so that the frames that are there stay until then.
+            directory: for the history and the frames; without one, nothing is written.
+            goes_on: whether ``restore`` is called next; existing frames are kept until then.
         """
         case = simulation.case
         settings, end = case.output, case.end
@@ -79,7 +79,7 @@ class Recorder:
         self._last_row = self._last_frame = -1  # steps
 
     def record(self) -> None:
-        """Add a row, and a frame, where one is due, and look for milestones and for the end."""
+        """Add a row and a frame if they are due, and check for milestones and for the end."""
         self.milestones.watch()
         self.ending.watch()
         now = self.simulation.time + 0.5 * self.simulation.time_step
@@ -92,7 +92,7 @@ class Recorder:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own."""
+        """The components with a state."""
         found: dict[str, Stateful] = {
             "history": self.history,
             "milestones": self.milestones,
@@ -108,26 +108,26 @@ class Recorder:
         return found | {"frames": self.frames, "wall_frames": self.wall_frames}
 
     def state(self) -> State:
-        """What has been recorded, and what is due."""
+        """The records so far, and the next times."""
         return plain_state(self) | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Take up what had been recorded by the present step of the simulation."""
+        """Restore the records up to the present step of the simulation."""
         restore_plain(self, state)
         restore(self.components, state)
 
     def add_last_row(self) -> None:
-        """Add a row of the present step, unless there is one."""
+        """Add a row of the present step if there is none."""
         if self._last_row != self.simulation.steps:
             self._add_row()
 
     def add_last_frame(self) -> None:
-        """Add a frame of the present step, unless there is one."""
+        """Add a frame of the present step if there is none."""
         if self.frames is not None and self._last_frame != self.simulation.steps:
             self._add_frame()
 
     def add_last_moment(self) -> None:
-        """Add the present step to the flow, unless it is there."""
+        """Add the present step to the flow if it is missing."""
         if self.flow is not None:
             self.flow.add(self.simulation)
 
@@ -164,7 +164,7 @@ class Recorder:
             self._write_flow()
 
     def _sink_means(self, passed: float) -> dict[str, np.ndarray]:
-        """What each sink has taken, and takes, mean over the time since the last row, s."""
+        """Mass removed by each sink, and its rate: the mean over the time since the last row, s."""
         mass = self.simulation.ledger.mass_out.copy()
         rate = (mass - self._sunk) / passed if passed > 0 else np.zeros_like(mass)
         self._sunk = mass
@@ -192,7 +192,7 @@ class Recorder:
 
 
 def _by_number(field: np.ndarray, number: np.ndarray) -> np.ndarray:
-    """A field with a row for every number up to the largest; not a number where a particle is no more."""
+    """A field with a row for every number up to the largest; NaN for particles that no longer exist."""
     if len(number) == number.max() + 1:
         return field[np.argsort(number)]
     found = np.full((int(number.max()) + 1, *field.shape[1:]), np.nan)

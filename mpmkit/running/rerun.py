@@ -1,4 +1,4 @@
-"""Repeating a run from its directory alone, and saying whether it came to the same bits."""
+"""Repeating a run from its directory, and comparing the results bit by bit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray
 
 TOLD = ("versions", "plugins", "machine")
-"""Attributes of a history that say with what, and where, it was made."""
+"""Attributes of a history about the software and the machine that made it."""
 
 
 def history_of(directory: Path) -> xarray.Dataset:
@@ -38,9 +38,9 @@ def history_of(directory: Path) -> xarray.Dataset:
 
 
 def made_differently(history: xarray.Dataset, case: Case, threads: int) -> list[str]:
-    """What is not as it was when a history was made: the case, versions, plug-ins, machine.
+    """Differences from the time when a history was made: the case, versions, plug-ins, machine.
 
-    Threads are left out: they change no bit.
+    Threads are left out, because they do not change the results.
     """
     edited = differences(
         json.loads(history.attrs.get("case", "null")), json.loads(json.dumps(portable(case)))
@@ -54,10 +54,10 @@ def made_differently(history: xarray.Dataset, case: Case, threads: int) -> list[
 
 
 def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | None:
-    """Where two histories of a case part, to the bit; None if they do not.
+    """The first difference between two histories of a case, compared bit by bit; None if there is none.
 
-    Of a run that did not finish, the rows that both have are compared, but for the last: it is of the step
-    at which the run was stopped.
+    For a run that did not finish, the common rows except the last are compared: the last row belongs to the
+    step at which the run was stopped.
     """
     finished = all(h.attrs.get("stopped_because") in ENDED for h in (before, after))
     rows = min(before.sizes["time"], after.sizes["time"]) - (0 if finished else 1)
@@ -68,7 +68,7 @@ def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | Non
     for name in ("time", *before.data_vars):
         a, b = (h[name].isel(time=slice(rows)).values for h in (before, after))
         a, b = a.reshape(rows, -1), b.reshape(rows, -1)
-        width = min(a.shape[1], b.shape[1])  # particles that came later in the longer one
+        width = min(a.shape[1], b.shape[1])  # the longer run may have added particles later
         apart = ~((a[:, :width] == b[:, :width]) | (np.isnan(a[:, :width]) & np.isnan(b[:, :width])))
         if apart.any():
             row = int(apart.any(axis=1).argmax())

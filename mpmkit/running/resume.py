@@ -1,4 +1,4 @@
-"""Going on with a run from its last checkpoint, if it is the same run: same case, same versions."""
+"""Continuing a run from its last checkpoint, if the case and the versions are the same."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .schedule import AT_THE_END
 
 
 def identity(case: Case) -> dict[str, Any]:
-    """What a run's bits depend on, beside the machine: the case, and the versions of what runs it."""
+    """Everything except the machine that the exact results depend on: the case and the versions."""
     return {
         "mpmkit": __version__,
         "numpy": np.__version__,
@@ -41,7 +41,7 @@ def _source(plugin: dict[str, str]) -> str:
 
 
 def differences(before: Any, now: Any, path: str = "") -> list[str]:
-    """Where two trees of JSON differ, each as ``path was A and is B``."""
+    """Differences of two JSON trees, each as ``path was A and is B``."""
     if isinstance(before, dict) and isinstance(now, dict):
         keys = [*before, *(key for key in now if key not in before)]
         pairs = [(f"{path}.{key}" if path else key, before.get(key), now.get(key)) for key in keys]
@@ -54,7 +54,7 @@ def differences(before: Any, now: Any, path: str = "") -> list[str]:
 
 
 def other_case(before: dict[str, Any], case: Case) -> list[str]:
-    """Where a case differs from one that ``portable`` gave; a file is named by where it lies."""
+    """Differences of a case from the result of ``portable``; files are named by their paths."""
     paths = {file.where: file.path for file in named_files(case)}
     found = differences(before, json.loads(json.dumps(portable(case))))
     for number, sentence in enumerate(found):
@@ -68,7 +68,7 @@ def case_of(directory: Path) -> Case:
     """The case that a run directory holds.
 
     Raises:
-        CaseError: it holds none, or a mesh in it is not what it was.
+        CaseError: there is none, or a mesh in it was changed.
     """
     file = RunDirectory(directory).case
     if not file.is_file():
@@ -82,7 +82,7 @@ def case_of(directory: Path) -> Case:
 def for_longer(case: Case, until: float | None, directory: Path) -> Case:
     """The case of a run with a later end; None leaves it as it is.
 
-    A time takes the place of conditions: the run then goes on to it, whatever would have ended it before.
+    A time replaces conditions: the run then continues to this time, and the conditions are ignored.
 
     Raises:
         CaseError: the end is earlier, or not a number.
@@ -101,7 +101,7 @@ def for_longer(case: Case, until: float | None, directory: Path) -> Case:
 def last_checkpoint(
     directory: Path, before: Case, case: Case
 ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """The state in the last whole checkpoint of a run, and the identity of the run that goes on from it.
+    """The state in the last valid checkpoint of a run, and the identity of the continued run.
 
     Args:
         directory: of the run.
@@ -109,8 +109,8 @@ def last_checkpoint(
         case: the same case, whose end may be later.
 
     Raises:
-        CaseError: there is none, or it is of another case or of other versions; says what differs. A later
-            ``until`` is no other case.
+        CaseError: there is none, or the case or the versions differ; the sentence names the difference. A
+        later ``until`` does not count as a difference.
     """
     files = RunDirectory(directory)
     checkpoints = Checkpoints(files.checkpoints)
@@ -143,7 +143,7 @@ def _has_finished(files: RunDirectory, before: Case, case: Case) -> bool:
 
 
 def _simulated_time(files: RunDirectory) -> float:
-    """The time, s, to which a run has come; 0 if it does not say."""
+    """The time, s, that a run has reached; 0 if it is not recorded."""
     time = _summary(files).get("simulated_time")
     return float(time) if isinstance(time, int | float) else 0.0
 

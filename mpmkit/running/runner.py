@@ -1,4 +1,4 @@
-"""A whole run: a case to its end, in memory or in a run directory, from the start or from a checkpoint."""
+"""A whole run of a case, in memory or in a run directory, from the start or from a checkpoint."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ def run(
         case: a validated case.
         out: run directory to write; nothing is written without one.
         overwrite: whether an earlier run in ``out`` may be replaced.
-        threads: threads to use; default: as many as make the run faster.
+        threads: threads to use; default: as many as are useful.
         listen: called with the progress a few times a second.
-        checkpoint_every: wall time, s, between two checkpoints in ``out``, from which ``resume`` goes on; one
-            is written on Ctrl-C, and one before the last step, in any case.
+        checkpoint_every: wall time, s, between two checkpoints in ``out``, for ``resume``. A checkpoint is
+        always written on Ctrl-C and before the last step.
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
         the fields named in ``output.particle_history``. Its attributes hold the numbers of the summary, such
-        as ``t500``, s, and ``final_spread``, m; NaN for what never happened.
+        as ``t500``, s, and ``final_spread``, m; NaN for events that did not occur.
 
     Raises:
         CaseError: the case cannot be run as it stands.
@@ -91,13 +91,13 @@ def _run_in(
     listen: Listener | None,
     checkpoint_every: float | None,
 ) -> Recorder:
-    # What is read is read before anything is overwritten: it may lie in that very directory.
+    # Read all files before anything is overwritten: they may be in the same directory.
     contents, data, itself = {file.name: file.content() for file in files}, portable(case), identity(case)
     with directory.claimed(), open_log(directory.log):
         try:
             Copies(directory.meshes).write(contents)
             write_json(directory.case, data)
-            # The originals, which may even have been cleared away, are not needed any more.
+            # The originals are not needed any more; they may even have been deleted.
             simulation.case = from_copies(case, files, directory.meshes)
             recorder = Recorder(simulation, _attributes(case, threads, data), directory)
         except OutputError as error:
@@ -117,7 +117,7 @@ def resume(
     listen: Listener | None = None,
     checkpoint_every: float | None = None,
 ) -> xarray.Dataset:
-    """Go on with a run from its last checkpoint; it ends with the bits that it would have had without a stop.
+    """Continue a run from its last checkpoint; the results are bit by bit those of a run without a stop.
 
     Args:
         directory: of the run.
@@ -130,8 +130,8 @@ def resume(
         The history of the whole run.
 
     Raises:
-        CaseError: there is no checkpoint, or it is of another case, or of other versions of what runs it, or
-            ``until`` is too early.
+        CaseError: there is no checkpoint, it belongs to another case or to other versions, or ``until`` is
+        too early.
         GuardStop, OutputError: as of ``run``.
     """
     require_threads()
@@ -170,17 +170,17 @@ def _restore(recorder: Recorder, watch: Stopwatch, state: State, path: Path) -> 
 
 
 def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str]:
-    """Those of a history in a run directory, with the case as it stands there."""
+    """The attributes of a history in a run directory, with the case as it is written there."""
     return attributes(case, threads) | {"case": json.dumps(data)}
 
 
 def _execute(
     recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
 ) -> None:
-    """Run to the end in a directory, and draw the pictures of it even if a guard stopped it.
+    """Run to the end in a directory, and draw the pictures, even if a guard stopped the run.
 
     Raises:
-        Undrawn: the run has finished, and was interrupted at its pictures.
+        Undrawn: the run has finished, but the drawing of its pictures was interrupted.
     """
     for line in log_lines(recorder.simulation.case, threads):
         RECORD.info("%s", line)
@@ -196,7 +196,7 @@ def _execute(
 
 
 def _report(recorder: Recorder, hurry: bool = False) -> None:
-    """Draw the pictures. They can be drawn again from the directory: none is worth the outcome of a run."""
+    """Draw the pictures. They can be drawn again later: a failure here must not make the run fail."""
     case, directory = recorder.simulation.case, recorder.directory
     if not case.output.report or directory is None:
         return

@@ -1,4 +1,4 @@
-"""Writes the checkpoints of a run, every so many seconds and when asked to."""
+"""Writes the checkpoints of a run, at intervals of wall time and on request."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LOGGER = logging.getLogger("mpmkit")
 
 
 def run_components(recorder: Recorder, watch: Stopwatch) -> dict[str, Stateful]:
-    """Everything of a run that has a state, in the order in which it is restored."""
+    """All components of a run with a state, in the order in which they are restored."""
     return {"simulation": recorder.simulation, "recorder": recorder, "watch": watch}
 
 
@@ -25,9 +25,9 @@ class Saver:
 
     Args:
         recorder: of the run; it has a directory.
-        watch: its clock, which goes on where it was.
-        every: wall time, s, between two checkpoints; None for none but those asked for.
-        identity: of the case, as ``resume`` has it.
+        watch: its clock, which continues after a resume.
+        every: wall time, s, between two checkpoints; None: only on request.
+        identity: of the case, as in ``resume``.
     """
 
     def __init__(
@@ -42,13 +42,13 @@ class Saver:
         self._last = clock.monotonic()
 
     def save_if_due(self) -> None:
-        """Write a checkpoint if the last one is long enough ago; where that fails, the run goes on."""
+        """Write a checkpoint if the last one is old enough; if that fails, the run continues."""
         if self._every is not None and clock.monotonic() - self._last >= self._every:
             self.save_if_possible()
             self._last = clock.monotonic()
 
     def save_if_possible(self) -> bool:
-        """Write a checkpoint, or warn that there is none: a run is not worth ending for it."""
+        """Write a checkpoint, or warn that it failed; the run continues in any case."""
         try:
             self.save()
         except (OutputError, MemoryError) as error:
@@ -69,5 +69,5 @@ class Saver:
         self._checkpoints.write(self._recorder.simulation.steps, state, {"identity": self._identity})
 
     def keep_last(self) -> None:
-        """Remove all checkpoints but the last, from which a run that has finished can go on for longer."""
+        """Remove all checkpoints except the last, from which a finished run can be made longer."""
         self._checkpoints.keep_last()

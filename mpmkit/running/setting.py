@@ -1,4 +1,4 @@
-"""What a case takes for granted, said before a run: its floor, its walls, and when the material is free."""
+"""Assumptions of a case, reported before a run: its floor, its walls, and the release of the material."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FLOORS = {
     "symmetry": "a plane of symmetry, which acts like free slip",
     "stick": "stick, so that the material does not slide on it",
 }
-"""What a face means as a floor, in words."""
+"""Kinds of faces as a floor, in words."""
 
 
 def setting(case: Case) -> list[str]:

@@ -8,11 +8,11 @@ import numpy as np
 
 
 class Stopwatch:
-    """Wall time of a run from its first step on, s: what it takes to load and compile is not the run's."""
+    """Wall time of a run from its first step, s; loading and compiling are not included."""
 
     def __init__(self) -> None:
         self._before = 0.0
-        """what a run that goes on has taken up to its checkpoint"""
+        """wall time up to the checkpoint, for a continued run"""
         self._begin: float | None = None
 
     def state(self) -> dict[str, np.ndarray]:
@@ -20,7 +20,7 @@ class Stopwatch:
         return {"elapsed": np.array(self.elapsed)}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Go on where the clock was."""
+        """Continue the clock from its saved time."""
         self._before, self._begin = float(state["elapsed"]), None
 
     def start(self) -> None:

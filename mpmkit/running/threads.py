@@ -12,14 +12,14 @@ from ..errors import CaseError
 
 LOGGER = logging.getLogger("mpmkit")
 PARTICLES_PER_THREAD = 10_000
-"""Below this a second thread costs more in waiting than it saves."""
+"""With fewer particles, a second thread costs more waiting time than it saves."""
 
 
 def possible_threads(threads: int | None) -> int | None:
-    """As many threads as asked for, or as there can be; a warning says where that is fewer.
+    """The requested number of threads, or the largest possible one with a warning.
 
     Raises:
-        CaseError: there cannot be so few.
+        CaseError: the number is below 1.
     """
     if threads is None:
         return None
@@ -35,10 +35,10 @@ def possible_threads(threads: int | None) -> int | None:
 def using_threads(threads: int | None, particles: int) -> Iterator[int]:
     """Inside the block numba uses as many threads as asked for, or as the particles can keep busy.
 
-    Yields that number; behind the block it is what it was.
+    Yields that number; after the block, the old number is restored.
 
     Raises:
-        CaseError: there cannot be so few.
+        CaseError: the number is below 1.
     """
     asked = possible_threads(threads)
     before = numba.get_num_threads()

@@ -1,4 +1,4 @@
-"""The walls of a run as they are drawn, at the times of its frames."""
+"""Drawings of the walls of a run at the times of its frames."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..registry import audit
 from ..solver.stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 
 SPACING = {2: 1 / 8, 3: 1 / 2}
-"""Cells of a drawing, in cells of the grid, by the number of dimensions: they cut off its edges."""
+"""Cell size of a drawing, in cells of the grid, by the number of dimensions; it limits sharp edges."""
 AROUND = 1.0
-"""Cells that a drawing goes beyond the faces of the grid: a rim that stands on a face is drawn as well."""
+"""Cells by which a drawing extends beyond the faces of the grid, to include a rim on a face."""
 
 
 class WallFrames:
-    """Draws each wall of a case, whatever its surface is, as the contour of its distance at 0.
+    """Draws each wall of a case, with any surface, as the contour of its distance at 0.
 
     ``add`` is to be called in a block of ``blaming_plugins``.
     """
@@ -40,7 +40,7 @@ class WallFrames:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own."""
+        """The components with a state."""
         return {"writer": self._writer}
 
     def state(self) -> State:
@@ -48,12 +48,12 @@ class WallFrames:
         return plain_state(self, but=("_spacing", "_lower", "_upper")) | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Go on after them."""
+        """Restore them."""
         restore_plain(self, state)
         restore(self.components, state)
 
     def add(self, time: float, step: int) -> None:
-        """Write the walls as they are at a time, s."""
+        """Write the walls at a time, s."""
         if not self._surfaces:
             return
         drawn = {
@@ -79,7 +79,7 @@ class WallFrames:
 
 
 def _box(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """Corners, m, of what is drawn: the domain, and a little beyond its faces, but not beyond a symmetry."""
+    """Corners, m, of the drawn box: the domain with a margin at its faces, except at planes of symmetry."""
     lower, upper = (end.copy() for end in case.domain_bounds)
     for number, axis in enumerate(case.space_.axes):
         for end, side, sign in ((lower, "min", -1), (upper, "max", 1)):

@@ -1,4 +1,4 @@
-"""Walls in words: what each is, what it allows, and how it moves."""
+"""Walls in words: surface, contact and motion of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..registry import audit
 from ..registry.blame import blaming_plugins
 
 NOT_SAID = ("kind", "name", "motion")
-"""Parameters of a plug-in that are said elsewhere in its sentence."""
+"""Parameters of a plug-in that its sentence already contains."""
 
 
 def wall_sentences(case: Case) -> list[str]:
@@ -39,7 +39,7 @@ def _plugin(plugin: Plugin) -> str:
 
 
 def _value(value: Any) -> str:
-    """A parameter; of a part with parameters of its own, such as a shape, its kind alone."""
+    """A parameter; for a part with its own parameters, such as a shape, only its kind."""
     if isinstance(value, dict):
         return str(value.get("kind", "given"))
     if isinstance(value, bool):

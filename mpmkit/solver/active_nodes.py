@@ -14,7 +14,7 @@ from .tasks import cuts
 
 
 class Plane(NamedTuple):
-    """A plane of ghosts across an axis, that of their images, and that of the wall, counted in the window."""
+    """Window indices, along an axis, of a plane of ghosts, the plane of their images, and the wall."""
 
     ghost: int
     image: int
@@ -22,26 +22,26 @@ class Plane(NamedTuple):
 
 
 class ActiveNodes:
-    """Rows of nodes to go through, and the ghosts and images among them.
+    """Rows of nodes that the kernels process, and the ghosts and images among them.
 
     Attributes:
         rows: ``(n, 2)``, the first node and the one after the last of every row along the last axis.
         tasks: ``(TASKS + 1,)``, rows cut into pieces of about equal load.
         faces: ``(dim, 2)``, the codes of the faces.
-        mirrors: ``(n, 3)``, ghost, image and node of the wall, plane by plane. No two of a plane share one.
-        plane_first: ``(3 dim + 1,)``, the first of ``mirrors`` of each plane, and their number. The planes
-            of an axis are the ghosts of its lower face, those of its upper face, and the upper face of a
-            periodic axis, which is an image of the lower one.
-        places: ``(n, dim)``, m, of the nodes of the wall of ``mirrors``; beyond a period that of the image.
-        held: ``(n, NODE)``, scratch: what lay on the ghosts of ``mirrors`` when they were folded.
+        mirrors: ``(n, 3)``, ghost, image and wall node, plane by plane. Within a plane, all are different.
+        plane_first: ``(3 dim + 1,)``, index of the first row of ``mirrors`` of each plane, and their number.
+            The planes of an axis are the ghosts of its lower face, those of its upper face, and the upper
+            face of a periodic axis, which is an image of the lower one.
+        places: ``(n, dim)``, m, positions of the wall nodes of ``mirrors``; beyond a period, of the image.
+        held: ``(n, NODE)``, scratch: values of the ghosts of ``mirrors`` before they were folded.
     """
 
     def __init__(self, window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> None:
         """
         Args:
             window: the nodes that are stored.
-            lowest_cell: ``(n, dim)``, of boxes of cells, in one of which every particle is.
-            highest_cell: the same at their other end.
+            lowest_cell: ``(n, dim)``, lower corner of boxes of cells that together contain all particles.
+            highest_cell: ``(n, dim)``, upper corner of these boxes.
         """
         dim = window.grid.dim
         planes = [plane for axis in range(dim) for plane in _planes(window, axis)]
@@ -60,7 +60,7 @@ class ActiveNodes:
 
 
 def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> np.ndarray:
-    """Which nodes of the window particles in these boxes of cells can touch."""
+    """Which nodes of the window can be touched by particles in these boxes of cells."""
     touched = np.zeros(window.shape[: window.grid.dim], dtype=bool)
     low, high = window.touchable(lowest_cell, highest_cell)
     for begin, end in zip(low - window.lower, high - window.lower + 1, strict=True):
@@ -69,7 +69,7 @@ def _touched(window: Window, lowest_cell: np.ndarray, highest_cell: np.ndarray) 
 
 
 def _close(touched: np.ndarray, axis: int, plane: Plane | None) -> None:
-    """With a ghost its image, and with an image its ghost: what is folded can be filled back."""
+    """Add the image of each touched ghost, and the ghost of each touched image, to fill ghosts later."""
     if plane is not None:
         along = np.moveaxis(touched, axis, 0)
         along[plane.ghost] |= along[plane.image]
@@ -77,7 +77,7 @@ def _close(touched: np.ndarray, axis: int, plane: Plane | None) -> None:
 
 
 def _rows(touched: np.ndarray) -> np.ndarray:
-    """First node and the one after the last of every row in which any node is touched."""
+    """First node, and the node after the last, of every row with touched nodes."""
     length = touched.shape[-1]
     row = np.flatnonzero(touched.any(axis=-1))
     touched = touched.reshape(-1, length)[row]
@@ -86,7 +86,7 @@ def _rows(touched: np.ndarray) -> np.ndarray:
 
 
 def _mirrors(window: Window, touched: np.ndarray, axis: int, plane: Plane | None) -> np.ndarray:
-    """(ghost, image, node of the wall) of the nodes of a plane that are touched."""
+    """(ghost, image, wall node) for the touched nodes of a plane."""
     if plane is None:
         return np.empty((0, 3), dtype=np.int64)
     index = np.moveaxis(np.arange(touched.size).reshape(touched.shape), axis, 0)
@@ -95,17 +95,17 @@ def _mirrors(window: Window, touched: np.ndarray, axis: int, plane: Plane | None
 
 
 def _places(window: Window, nodes: np.ndarray) -> np.ndarray:
-    """Where nodes of the window are, m, ``(n, dim)``; those beyond a period are at their image."""
+    """Positions of nodes of the window, m, ``(n, dim)``; beyond a period, those of their images."""
     grid = window.grid
     number = np.stack(np.unravel_index(nodes, window.shape[: grid.dim]), axis=1) + window.lower
     return grid.lower + np.where(grid.periodic, np.mod(number, grid.cells), number) * grid.cell_size
 
 
 def _planes(window: Window, axis: int) -> Iterator[Plane | None]:
-    """The ``PLANES`` planes of an axis; None for one that its faces do not have, or that is not stored.
+    """The ``PLANES`` planes of an axis; None for a plane that its faces do not have, or that is not stored.
 
-    Planes are handled one after the other, since the images of two may be one: along a periodic axis of one
-    cell that of all three is the lower face.
+    Planes are handled one after the other, because two may have the same image: along a periodic axis of one
+    cell, the image of all three is the lower face.
     """
     lower, upper = (int(wall) for wall in window.walls[axis])
     of_face = [_behind(window, axis, 0, lower), _behind(window, axis, 1, upper)]

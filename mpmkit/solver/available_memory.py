@@ -1,4 +1,4 @@
-"""How much memory this process can still take: of the machine, of its control group, of its batch job."""
+"""How much memory this process can still allocate: limits of the machine, control group and batch job."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 
 GROUPS, OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
-"""Where Linux says how much the control groups may take, and of which ones this process is."""
+"""Linux files with the limits of control groups, and with the groups of this process."""
 MIB = 2**20
 
 
@@ -20,11 +20,11 @@ def available_memory() -> int:
 
 
 def tightest_limit() -> tuple[int, str]:
-    """Bytes that can still be allocated, and what limits them, in words.
+    """Bytes that can still be allocated, and the limit behind them in words.
 
-    It is the least of four: what the machine has free; what the control groups of this process may still take
-    (version 1 and 2, by which containers and most batch systems hold a job); what Slurm has granted to the
-    job; and what is left of the address space (``ulimit -v``).
+    It is the least of four values: the free memory of the machine; the rest of the limits of the control
+    groups (version 1 and 2; containers and most batch systems use them); the rest of the memory that Slurm
+    has granted to the job; and the rest of the address space (``ulimit -v``).
     """
     left = [(psutil.virtual_memory().available, "on this machine")]
     left += [(size, "by the limit of its control group") for size in _of_control_groups()]
@@ -35,7 +35,7 @@ def tightest_limit() -> tuple[int, str]:
 
 
 def _of_control_groups() -> Iterator[float]:
-    """What the group of this process, and each that it lies in, may still take; file cache counts as free."""
+    """The rest of the limits of this process's group and its parent groups; file cache counts as free."""
     for line in _text(OWN_GROUPS).splitlines():
         _, controllers, path = [*line.split(":", 2), "", ""][:3]
         if controllers == "":
@@ -54,7 +54,7 @@ def _of_control_groups() -> Iterator[float]:
 
 
 def _of_slurm() -> Iterator[float]:
-    """What Slurm has granted to the job on this node, less what this process has; 0 stands for all of it."""
+    """Memory granted by Slurm on this node, minus that of this process; for Slurm, 0 means all memory."""
     cpus = re.match(r"\d+", os.environ.get("SLURM_CPUS_ON_NODE", ""))
     grants = {"SLURM_MEM_PER_NODE": 1, "SLURM_MEM_PER_CPU": int(cpus[0]) if cpus else 1}
     for name, times in grants.items():
@@ -66,7 +66,7 @@ def _of_slurm() -> Iterator[float]:
 def _of_address_space() -> Iterator[float]:
     try:
         import resource
-    except ImportError:  # Windows has none
+    except ImportError:  # not available on Windows
         return
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
     if most != resource.RLIM_INFINITY:
@@ -74,7 +74,7 @@ def _of_address_space() -> Iterator[float]:
 
 
 def _text(file: Path) -> str:
-    """The content of a file; nothing where there is none."""
+    """The content of a file; empty if there is no file."""
     try:
         return file.read_text(encoding="utf-8")
     except (OSError, ValueError):

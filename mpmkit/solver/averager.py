@@ -1,4 +1,4 @@
-"""Averages of particle fields over the grid: to the nodes, and back to the particles."""
+"""Averages of particle fields over the grid: from particles to nodes and back."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from .walls import Walls
 
 
 class Averager:
-    """Σ w N f / Σ w N at the nodes, and Σ N of that at the particles, with the weights N of the present step.
+    """f_n = Σ w N f / Σ w N at the nodes, and Σ N f_n at the particles, with the weights N of the present
+    step.
 
     Args:
-        particles: whose fields are averaged.
-        window: the nodes; their ``pairs`` hold sums for a moment, their ``average`` the average.
-        walls: they fold and fill as the faces of the grid do.
-        sorting: of the particles, and of the nodes that they can touch.
-        base, weight: tables of the shape function, filled anew in every step.
+        particles: the particles whose fields are averaged.
+        window: the nodes; ``pairs`` holds the sums temporarily, ``average`` the averages.
+        walls: they fold and fill ghosts as the faces of the grid do.
+        sorting: order of the particles, and the nodes that they can touch.
+        base, weight: tables of the shape function, computed in every step.
     """
 
     def __init__(
@@ -47,7 +48,7 @@ class Averager:
         self._scatter_pairs(w.pairs, w.strides, w.lower, self.sorting.tasks, *self._tables, weight, values)
 
     def at_nodes(self, values: np.ndarray, weight: np.ndarray, crowding: np.ndarray | None = None) -> None:
-        """Σ w N f / Σ w N, over the crowding if any, into ``window.average``; zero where nothing is."""
+        """Σ w N f / Σ w N, over the crowding if given, into ``window.average``; 0 without material."""
         w, active = self.window, self.sorting.active
         self.sums(values, weight)
         if crowding is not None:
@@ -57,7 +58,7 @@ class Averager:
         self.walls.fill_average(w.average)
 
     def at_particles(self) -> np.ndarray:
-        """What ``window.average`` holds, at the particles, ``(n,)``."""
+        """``window.average`` interpolated to the particles, ``(n,)``."""
         w, out = self.window, np.empty(len(self.particles))
         self._gather_scalar(w.average, w.strides, w.lower, *self._tables, out)
         return out

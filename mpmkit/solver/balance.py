@@ -1,4 +1,4 @@
-"""The energy balance of a scene: what moves and is stored, against what was put in."""
+"""The energy balance of a scene: kinetic and stored energy, compared with the energy supplied."""
 
 from __future__ import annotations
 
@@ -13,37 +13,38 @@ from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
 CREATED = 0.2
-"""Created energy, relative to the energy that the scene had to move, that stops a run after some checks."""
+"""A run stops if the created energy, relative to the supplied energy, exceeds this in several checks."""
 CREATED_BY_IMPACT = 0.02
-"""The same after a hard impact where all materials are solids: nothing pushes their particles apart, which
-takes energy from nowhere. What update orders create in slower motion is told at the end, and not stopped:
-1 to 7 % of it came from USF and MUSL with FLIP at a tenth to a fifth of the wave speed."""
+"""The same after a hard impact if all materials are solids: there, no correction of positions adds energy.
+Energy that update orders create in slower motion is reported at the end and does not stop the run: USF and
+MUSL with FLIP created 1 to 7 % at a tenth to a fifth of the wave speed."""
 HARD = 0.25
-"""Speed of a solid over its wave speed from which an impact is a hard one: strains are then finite."""
+"""An impact is hard if the speed of the solid over its wave speed exceeds this: strains are then large."""
 LOOKS = 10
-"""Looks in a row at which there may be as much."""
+"""Consecutive checks in which the limit may be exceeded before the run stops."""
 MOST_CREATED = 1.0
-"""What is not taken at all. Of a wave of frequency ω an explicit step conserves (v² + ω²x² - ωΔt v ωx)/2, so
-that K + U goes up to 1/(1 - ωΔt/2) of what it was: twice, for the shortest wave at half the critical step."""
+"""A run stops at once above this. For a wave of frequency ω, an explicit step conserves
+(v² + ω²x² - ωΔt v ωx)/2, so that K + U can rise to 1/(1 - ωΔt/2) times its initial value: by a factor of 2
+for the shortest wave at half the critical step."""
 
 ROUNDING = 1e-9
-"""Energy that is nothing, over that of flying at the speed of the fastest wave."""
+"""Negligible energy, relative to the kinetic energy at the speed of the fastest wave."""
 
 
 class EnergyBalance:
     """Compares the energy of a scene with the ledger.
 
-    Materials dissipate, so that what moves and is stored can be no more than what the ledger accounts for,
+    Materials dissipate, so that kinetic and stored energy cannot exceed the energy in the ledger,
 
         created = (K + U) - start - in - out - W <= 0,
 
-    with K the kinetic energy, U what is stored in shape and in pressure, and W the work of gravity and of
-    walls that move, and what refinement has changed, see ``ledger.Ledger``.
-    What a redistribution has put in, R, is a part of what was created, and is not excused: one that feeds
-    more than the material dissipates is stopped like any other fault. It is kept apart to name the cause,
-    and ``created - redistributed`` is what the rest of the scheme has created.
-    Splitting leaves part of the affine velocity to the halves: that is taken as put in. A sound speed that
-    follows the flow changes at the same U, see ``solver.sound``, and is forgiven nothing.
+    with K the kinetic energy, U the energy stored in shape and pressure, and W the work of gravity and of
+    moving walls plus the changes by refinement, see ``ledger.Ledger``.
+    Energy added by a redistribution, R, counts as created: a redistribution that adds more than the material
+    dissipates stops the run like any other fault. R is recorded separately to name the cause;
+    ``created - redistributed`` is the energy created by the rest of the scheme.
+    Splitting gives part of the affine velocity to the halves; this counts as supplied. A sound speed that
+    follows the flow changes at constant U, see ``solver.sound``, and needs no allowance.
 
     Attributes:
         solid: whether all materials are solids.
@@ -61,7 +62,7 @@ class EnergyBalance:
         mass = float(np.sum(particles.mass))
         self._wave_speed = max(group.wave_speed for group in particles.groups)
         falling = float(np.linalg.norm(gravity)) * grid.cell_size
-        # What a scene gains by falling one cell, or, without gravity, by rounding: so much is nothing.
+        # Negligible: the energy of a fall by one cell or, without gravity, of rounding.
         self._least = mass * (falling + ROUNDING * self._wave_speed**2)
 
     def state(self) -> State:
@@ -69,11 +70,11 @@ class EnergyBalance:
         return plain_state(self)
 
     def restore(self, state: State) -> None:
-        """Take its numbers back."""
+        """Restore its numbers."""
         restore_plain(self, state)
 
     def update(self, p: Particles, energy: np.ndarray) -> None:
-        """Take the energies by cause, J, of the present state."""
+        """Record the energies by cause, J, of the present state."""
         self._first, self.redistributed = float(energy[START]), float(energy[REDISTRIBUTION])
         self.held = float(energy.sum())
         work = float(energy[[IN, GRAVITY, WALLS, REFINEMENT]].sum())
@@ -87,12 +88,12 @@ class EnergyBalance:
 
     @property
     def supply(self) -> float:
-        """Energy that the scene had to move with, J: at the start, and from gravity at its most."""
+        """Energy supplied to the scene, J: at the start, and by gravity up to its largest work."""
         return self._first + self._most_work + self._least
 
     @property
     def excess(self) -> float:
-        """Energy created, over the supply."""
+        """Created energy, relative to the supplied energy."""
         return self.created / self.supply
 
     @property

@@ -1,4 +1,4 @@
-"""Crowding of the grid's nodes: what lies at them, over what has room there."""
+"""Crowding of the grid's nodes: particle volume at a node, relative to the volume of the node."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .redistribution.mirrored import Mirrored
 class Crowding:
     """κ_n = Σ_p V_p N_np / V_n at nodes, with the quadratic B-splines N of the grid's nodes.
 
-    V_p = J V_0 are the present volumes of the particles and V_n the room of a node, all of it mirrored at
-    walls; in an axisymmetric scene with areas V / (2πr).
+    V_p = J V_0 are the present volumes of the particles and V_n the volume of a node, both mirrored at walls.
+    In an axisymmetric scene, areas V / (2πr) are used.
     """
 
     block: Mirrored
@@ -27,7 +27,7 @@ class Crowding:
 
 
 def crowding(p: Particles, grid: Grid, radial: bool) -> Crowding | None:
-    """The crowding of a state between two steps; None where nothing is in the domain."""
+    """The crowding of a state between two steps; None if no particle is in the domain."""
     position, size = _in_domain(p, grid, radial)
     if not len(size):
         return None
@@ -42,7 +42,7 @@ def crowding(p: Particles, grid: Grid, radial: bool) -> Crowding | None:
 
 
 def _in_domain(p: Particles, grid: Grid, radial: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Places, m, and volumes, m³, or in an axisymmetric scene areas, m², of what is in the domain."""
+    """Positions, m, and volumes, m³ (axisymmetric: areas, m²), of the particles in the domain."""
     finite = np.isfinite(p.position).all(axis=1) & np.isfinite(p.volume)
     position, size = p.position[finite], p.volume[finite]
     position = np.where(grid.periodic, np.mod(position, grid.extent), position)

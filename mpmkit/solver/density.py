@@ -1,4 +1,4 @@
-"""How densely the interior of the material is filled: what of it lies at the nodes, over what should."""
+"""Density of the interior of the material: nodal density relative to the correct density."""
 
 from __future__ import annotations
 
@@ -12,46 +12,46 @@ from .grid import Grid
 from .particles import Particles
 
 FULL = 0.75
-"""Filling from which a node is full; one that is full, as all around it are, is of the interior."""
+"""A node with at least this κ is full; a full node with full neighbours is in the interior."""
 
 TOUCHING = 0.97
-"""Filling of a node on a wall that material touches: 1 - 3 g/2, with g = 0.02 cells between them."""
+"""Least κ of a node on a wall that material touches: 1 - 3 g/2 for a gap of g = 0.02 cells."""
 
 
 @dataclass(frozen=True)
 class Density:
-    """Density of the interior of the material, each node's over that of the material there.
+    """Density of the interior of the material: density of each node over that of the material there.
 
     κ_n = Σ_p V_p N_np / V_n, with the quadratic B-splines N of the grid's nodes, the present volumes
-    V_p = J V_0 of the particles and the room V_n of a node, all of it mirrored at walls; in an axisymmetric
-    scene with areas V / (2πr). Mass over volume is ρ/J in the material and Σ m_p N_np / V_n at a node. Their
-    quotient is κ: it is one, whatever the pressure, where particles lie as densely as their volumes say. That
-    holds for solids as well, whose J is that of their deformation. The *interior* are the nodes with
-    κ >= 0.75 whose neighbours all have κ >= 0.75 as well; at a surface, less is right. So it is at a wall
-    that material leaves: a node on a wall is of the interior only if κ >= 0.97, as with a gap of 0.02 cells.
+    V_p = J V_0 of the particles and the volume V_n of a node, both mirrored at walls; in an axisymmetric
+    scene with areas V / (2πr). The density is ρ/J in the material and Σ m_p N_np / V_n at a node. Their ratio
+    is κ: it is 1 at any pressure if the positions of the particles agree with their volumes. This also holds
+    for solids, whose J is that of their deformation. The *interior* consists of the nodes with κ >= 0.75
+    whose neighbours all have κ >= 0.75. Smaller values are correct at a free surface, and at a wall from
+    which material separates: a node on a wall is in the interior only if κ >= 0.97 (gap <= 0.02 cells).
 
-    Means are by volume. Where no node is inside, they are NaN, and so is the worst.
+    Means are weighted by volume. Without interior nodes, the means and the worst value are NaN.
     """
 
     mean: float
     """Mean of κ over the interior."""
     worst: float
-    """κ of the node of the interior that departs most from one."""
+    """κ of the interior node with the largest |κ - 1|."""
     departure: float
-    """Mean of |κ - 1| over the interior. Too much in one place does not make up for too little in another."""
+    """Mean of |κ - 1| over the interior. Too high and too low densities do not cancel."""
     part: float
-    """Volume of the interior over that of all material."""
+    """Volume of the interior, relative to all material."""
     place: np.ndarray
-    """Where the worst node is, m, from the grid's lower corner, ``(dim,)``."""
+    """Position of the worst node, m, from the grid's lower corner, ``(dim,)``."""
 
 
 def density(p: Particles, grid: Grid, radial: bool) -> Density:
-    """The density of the interior; of a state between two steps, in whatever order the particles are."""
+    """The density of the interior of a state between two steps; the particles may be in any order."""
     return density_of(crowding(p, grid, radial), p, grid, radial)
 
 
 def density_of(found: Crowding | None, p: Particles, grid: Grid, radial: bool) -> Density:
-    """The density of the interior, where the crowding is known already."""
+    """The density of the interior, if the crowding is already known."""
     nowhere = Density(math.nan, math.nan, math.nan, 0.0, np.full(grid.dim, math.nan))
     if found is None:
         return nowhere
@@ -65,7 +65,7 @@ def density_of(found: Crowding | None, p: Particles, grid: Grid, radial: bool) -
         return nowhere
     place = grid.cell_size * number
     volume = room[inside]
-    if radial:  # a ring up to half a cell to either side, and no further than the axis and the last face
+    if radial:  # a ring of half a cell to each side, cut at the axis and the last face
         radius, half = place[:, 0], grid.cell_size / 2
         volume = volume * np.pi * (np.maximum(radius - half, 0) + np.minimum(radius + half, grid.extent[0]))
     filling = filling[inside]

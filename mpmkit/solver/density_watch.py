@@ -1,4 +1,4 @@
-"""Watches over the density of the interior of the material: what the program cannot hold, it says."""
+"""Monitors the density of the interior of the material, and reports if it becomes wrong."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from .stateful import State, plain_state, restore_plain
 from .view import SceneView
 
 INTERVAL = 200
-"""Steps between two looks: each takes about as long as a step."""
+"""Steps between two checks; a check takes about as long as a step."""
 SPEAKS = 0.25
-"""Part of the volume that the interior must hold to speak for the rest. In a sheet of two cells less is
-inside, and what is left are a few nodes and their noise."""
+"""Least part of the volume in the interior for a check. In a sheet of two cells, the interior is smaller:
+only a few nodes with noise."""
 NOTED = 0.05
-"""Departure, mean over the interior, that is worth a warning. Of what was measured (docs/theory.md), all that
-is right stays below 0.047; a film that loses its speed comes to 0.05 while that is still right to 1 %."""
+"""Mean departure over the interior that gives a warning. In the measurements (docs/theory.md), correct flows
+stay below 0.047; a film that loses speed reaches 0.05 while its speed is still right to 1 %."""
 BROKEN = 0.1
-"""Departure that stops a run. That film has lost 8 % of its speed by then."""
+"""Mean departure that stops a run. The film mentioned above has then lost 8 % of its speed."""
 
 
 class DensityWatch:
-    """Looks at the density every so often, and remembers the worst.
+    """Checks the density every few steps, and remembers the worst.
 
     Attributes:
         most: largest departure so far, see ``Density``.
-        since: time at which it was first worth a warning, s; not a number before.
+        since: time of the first departure that gives a warning, s; NaN before.
     """
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class DensityWatch:
         restore_plain(self, state)
 
     def look(self, scene: SceneView) -> Density | None:
-        """The density, where a look is due and it departs so far that the run must stop; else None."""
+        """The density, if a check is due and the departure is so large that the run must stop; else None."""
         if scene.steps < self._next_look:
             return None
         self._next_look = scene.steps + INTERVAL
@@ -55,12 +55,12 @@ class DensityWatch:
 
     @property
     def noted(self) -> bool:
-        """Whether the density has departed so far that it is worth a warning."""
+        """Whether the departure of the density was large enough for a warning."""
         return self.most > NOTED
 
 
 def warning(scene: SceneView, watch: DensityWatch) -> str:
-    """The sentence of what has been noted so far."""
+    """The warning about the largest departure so far."""
     return (
         f"inside the material the density is wrong by up to {100 * watch.most:.2g} % on average, since "
         f"t = {watch.since:.4g} s (history: density_mean, density_worst): positions and volumes "
@@ -69,7 +69,7 @@ def warning(scene: SceneView, watch: DensityWatch) -> str:
 
 
 def cure(scene: SceneView) -> str:
-    """What keeps the particles of a scene even, in words."""
+    """The setting that keeps the particles evenly spaced, in words."""
     fluid = any(group.law.uses_equation_of_state for group in scene.particles.groups)
     if fluid and not redistributes(scene.case.scheme.redistribution):
         return "scheme.redistribution 'even' keeps them consistent"

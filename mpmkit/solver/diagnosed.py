@@ -1,4 +1,4 @@
-"""What the diagnostics of a case measure of a scene."""
+"""The values that the diagnostics of a case measure in a scene."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def diagnosed(scene: SceneView) -> dict[str, float]:
     """The columns of all diagnostics at the present step.
 
     Raises:
-        PluginFault: one measured what it does not declare, or no number.
+        PluginFault: a diagnostic returned an undeclared column, or a value that is not a number.
     """
     found: dict[str, float] = {}
     observed = Observation(scene)

@@ -1,4 +1,4 @@
-"""What sinks take out of a scene."""
+"""Removal of material by sinks."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from .particles import Particles
 
 
 class Drains:
-    """The sinks of a case, which are asked after every step.
+    """The sinks of a case, which act after every step.
 
     Attributes:
-        emptied: in words, which sinks would leave nothing of a material, where a run cannot go on; empty as
-            long as there is something of each. The last of a material stays, and is not counted as taken.
+        emptied: a sentence with the sinks that would remove all of a material, so that the run must end;
+            empty
+        before. The last particles of a material stay, and do not count as removed.
     """
 
     def __init__(self, case: Case, grid: Grid, particles: Particles, ledger: Ledger) -> None:
@@ -28,7 +29,7 @@ class Drains:
         self.emptied = ""
 
     def state(self) -> dict[str, np.ndarray]:
-        """Whether there is anything left."""
+        """Whether the run can continue: there is material left."""
         return {"emptied": np.array(self.emptied)}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
@@ -36,10 +37,10 @@ class Drains:
         self.emptied = str(state["emptied"])
 
     def take_out(self, time: float) -> bool:
-        """Take out what is in the sinks, and write it down; whether anything was taken.
+        """Remove the particles in the sinks, and record them; return whether any was removed.
 
         Raises:
-            PluginFault: a sink does not say which particles it takes.
+            PluginFault: a sink does not return which particles it takes.
         """
         if not self._sinks:
             return False
@@ -60,7 +61,7 @@ class Drains:
         return True
 
     def _by(self, time: float) -> np.ndarray:
-        """The sink that takes each particle, ``(n,)``, the first of the case if there are several; or -1."""
+        """Index of the sink that takes each particle, ``(n,)``, the first one if several do; -1 for none."""
         position = self._particles.position + self._lower
         found = np.full(len(position), -1)
         for index, sink in enumerate(self._sinks.values()):

@@ -1,4 +1,4 @@
-"""The energies of the particles, J: of motion, of shape, of volume, and in the field of gravity."""
+"""The energies of the particles, J: kinetic, elastic (shape), of volume change, and potential."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .particles import Group, Particles
 
 
 def kinetic_energy(p: Particles) -> float:
-    """½ Σ m v², of the particles' own velocities, without what an affine part adds within each."""
+    """½ Σ m v², without the contribution of the affine velocity inside each particle."""
     return 0.5 * float(sums.kinetics(p.mass, p.velocity)[1])
 
 
@@ -33,7 +33,7 @@ def strain_energy(p: Particles) -> float:
 
 
 def compressive_energy(p: Particles) -> float:
-    """Energy of the equations of state."""
+    """Energy stored by the equations of state."""
     total = 0.0
     for group in p.groups:
         if group.law.uses_equation_of_state:
@@ -47,7 +47,7 @@ def compressive_energy(p: Particles) -> float:
 
 
 def _require_stored(p: Particles, group: Group, author: Plugin, density: np.ndarray) -> None:
-    """Of a law that does work of its own nothing is known: its energy is not guarded either."""
+    """Whether all laws are passive. A law that adds energy is not checked by the energy guard."""
     if group.law.passive and not 0 <= density.min() <= density.max() < np.inf:
         part, modulus = group.part, group.density * group.wave_speed**2
         require_energy(author, density, p.number[part], p.volume_ratio[part], p.stress[part], modulus)

@@ -24,15 +24,15 @@ FACE_CODES = {
     "periodic": node_kernels.PERIODIC,
 }
 KEPT = (0, CONTACT)
-"""Entries of a node's record, its mass and its contact, that are read before a step writes them again: by the
-guard of the mass, and by walls that push."""
+"""Entries of a node's record (mass and contact) that are read before a step overwrites them: by the mass
+guard and by walls."""
 GHOST = 1
-"""Layers of nodes beyond each face: as many as the widest particle at a face can touch."""
+"""Layers of nodes beyond each face that the widest particle at a face can touch."""
 
 
 @dataclass
 class Grid:
-    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis is on its lower face, node -1 behind."""
+    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis is on its lower face, node -1 outside."""
 
     lower: np.ndarray
     cells: np.ndarray
@@ -78,7 +78,7 @@ class Grid:
 
     @cached_property
     def walls(self) -> np.ndarray:
-        """Faces that act only where they are touched, ``(dim, 2)``; a plane of symmetry is none of them."""
+        """Faces that act only where material touches them, ``(dim, 2)``; without planes of symmetry."""
         return np.array([[node_kernels.is_wall(face) for face in pair] for pair in self.faces])
 
     @cached_property
@@ -102,10 +102,10 @@ class Span(NamedTuple):
 
 @dataclass
 class Window:
-    """The block of nodes that is stored: the material's bounding box with some room to move in.
+    """The block of nodes that is stored: the bounding box of the material, plus a margin for its motion.
 
     Cost and memory depend on the material, not on the domain. ``shape`` and ``strides`` have three entries,
-    so that the kernels that work on nodes alone need no dimension of their own.
+    so that kernels on nodes work for any dimension.
     """
 
     grid: Grid
@@ -116,19 +116,19 @@ class Window:
     nodes: np.ndarray = field(init=False)
     """Records of ``NODE`` doubles, one a node."""
     pairs: np.ndarray = field(init=False)
-    """(nodes, 2) the sums of an average; zero in between"""
+    """(nodes, 2) the sums of an average; zero outside averaging"""
     average: np.ndarray = field(init=False)
-    """(nodes, 1) and the average itself"""
+    """(nodes, 1) the average itself"""
     _cells: tuple[np.ndarray, np.ndarray] | None = field(init=False, default=None)
-    """Lowest and highest cell that the window was laid for; None before the first time."""
+    """Lowest and highest cell for which the window was laid; None before the first time."""
     _capacity: int = field(init=False, default=0)
     _stores: list[np.ndarray] = field(init=False)
 
     def touchable(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """First and last node along each axis that particles in these cells, ``(..., dim)``, can touch.
 
-        A particle's box reaches at most half a cell beyond its own cell. Where the image of a ghost is
-        reached, so is the ghost: what is folded can be filled back.
+        A particle's box reaches at most half a cell beyond its own cell. If the image of a ghost
+        is included, so is the ghost, so that folded values can be filled back.
         """
         grid = self.grid
         low, high = lowest_cell - 1, highest_cell + 2
@@ -137,7 +137,7 @@ class Window:
         return low, high
 
     def span(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> Span:
-        """What a block needs to cover for particles in these cells, ``(dim,)``."""
+        """Number of nodes that a block needs for particles in these cells, ``(dim,)``."""
         low, high = self.touchable(lowest_cell, highest_cell)
         return Span(low.astype(np.int64), self._shape(low, high))
 
@@ -149,14 +149,14 @@ class Window:
             self._restore_contacts(*contacts)
 
     def state(self) -> State:
-        """Where the window lies, and of its nodes what a step leaves behind: their masses and contacts."""
+        """Position of the window, and the masses and contacts of its nodes, which outlive a step."""
         if self._cells is None:
             return {}
         low, high = self._cells
         return {"low": low, "high": high, "kept": self.nodes[:, list(KEPT)]}
 
     def restore(self, state: State) -> None:
-        """Lay the window where it was, in memory of its own."""
+        """Lay the window at its saved position, in new memory."""
         self._capacity, self._cells = 0, None
         if state:
             self._lay(state["low"].copy(), state["high"].copy())
@@ -180,21 +180,21 @@ class Window:
         self.average[:] = 0.0
 
     def _shape(self, low: np.ndarray, high: np.ndarray) -> tuple[int, int, int]:
-        """Nodes along each axis of a window over nodes that are touched, and along none of them one node."""
-        # One node beyond what is touched, which gets nothing but zeros: a particle on an upper face counts to
-        # the cell beyond it, and the last of the nodes there that a shape function names has no weight.
+        """Nodes along each of three axes of a window over touched nodes; 1 along a missing axis."""
+        # One more node, with zero weight: a particle on an upper face belongs to the cell beyond it, and the
+        # last node in the table of its shape function has no weight.
         size = [int(n) + 1 for n in high - low + 1]
-        size[-1] += 1  # rows of pairs are as wide as a vector, and reach one node further
+        size[-1] += 1  # vector loads of rows of pairs read one node further
         size += [1] * (3 - self.grid.dim)
         return size[0], size[1], size[2]
 
     def missing(self, lowest_cell: np.ndarray, highest_cell: np.ndarray) -> int:
-        """Nodes that the window over these cells needs; 0 where the memory that it has is enough for it."""
+        """Nodes that the window over these cells needs; 0 if its present memory is large enough."""
         count = math.prod(self.span(lowest_cell, highest_cell).shape)
         return count if count > self._capacity else 0
 
     def _contacts(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Which nodes the walls pushed last, and the block's lower corner: all that outlives a window."""
+        """The nodes that walls pushed last, and the block's lower corner: the data that outlive a window."""
         if self._cells is None or not self.grid.walled:
             return None
         return self.lower, self.nodes[:, CONTACT].reshape(self.shape[: self.grid.dim]).copy()
@@ -209,7 +209,7 @@ class Window:
 
 
 def _aligned(size: int) -> np.ndarray:
-    """Zeros that begin with a cache line, so that a node's record is one line and not parts of two."""
+    """Zeros aligned to cache lines, so that the record of a node lies in one line."""
     line = 8 * LANES
     store = np.zeros(size + LANES)
     begin = -store.ctypes.data % line // 8

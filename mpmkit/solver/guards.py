@@ -1,4 +1,4 @@
-"""What stops a run that has gone wrong: each guard says when, which particle, likely why, and what to try."""
+"""Guards stop a run that has gone wrong; the message gives step, particle, likely cause and cure."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from .time_step import warnings
 from .view import SceneView
 
 COLLAPSED = 1e-4
-"""Part of the longest step so far below which it has collapsed: a run that took a minute now takes a week."""
+"""If the step falls below this part of the longest step so far, a run of a minute would take a week."""
 DRIFT = 1e-9
-"""Part of the mass that may get lost: rounding is a thousand times less."""
+"""Largest relative error of the mass; rounding is a thousand times smaller."""
 
 
 class Guards:
-    """Looks at a scene every few steps, and stops it where it is beyond saving.
+    """Checks a scene every few steps, and stops the run if its results can no longer be right.
 
     Attributes:
-        watches_energy: set it to False where something beside gravity does work, such as forces that a
-            program adds to the nodes; a law that does work of its own says so itself (``passive``).
+        watches_energy: set it to False if something other than gravity does work, such as forces that a
+        program adds to the nodes. A law that adds energy declares it itself (``passive``).
         watches_density: set it to False to follow a flow beyond the point at which its density is wrong.
-        density: the watch over the density of the interior.
+        density: the monitor of the density of the interior.
     """
 
     def __init__(self, scene: SceneView) -> None:
@@ -49,22 +49,22 @@ class Guards:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own."""
+        """The components with a state."""
         found: dict[str, Stateful] = {"density": self.density}
         return found if self.balance is None else found | {"balance": self.balance}
 
     def state(self) -> State:
-        """What the guards remember of the run: without it, a run that goes on would be forgiven."""
+        """The memory of the guards; without it, a resumed run would start with clean guards."""
         return plain_state(self, but=("balance",)) | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Take back what was remembered, for particles that are in their state already."""
+        """Restore the memory; the particles must be restored before."""
         self.balance = self._new_balance() if any(name.startswith("balance/") for name in state) else None
         restore(self.components, state)
         restore_plain(self, state)
 
     def begin(self) -> None:
-        """Begin to watch the energy of the state in which the scene begins, once."""
+        """Record the energy of the initial state, at the first call."""
         if self._begun:
             return
         self._begun = True
@@ -76,7 +76,7 @@ class Guards:
         return EnergyBalance(s.particles, s.grid, s.case.gravity_vector)
 
     def check(self) -> None:
-        """Raise GuardStop where the run is beyond saving.
+        """Raise GuardStop if the results of the run can no longer be right.
 
         That is: a particle is unsound, mass is missing, energy was created, or positions and volumes of the
         particles contradict each other.
@@ -100,7 +100,7 @@ class Guards:
             self._stop_of_density(uneven)
 
     def check_step(self) -> None:
-        """Raise GuardStop if the chosen step is not a positive number, or far shorter than it once was."""
+        """Raise GuardStop if the step is not a positive number, or has become extremely short."""
         s = self._scene
         step = s.time_step
         if not step > COLLAPSED * self._longest_step or not s.time + step > s.time:
@@ -178,10 +178,10 @@ class Guards:
 
 
 def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = False) -> NoReturn:
-    """Raise the GuardStop that fits what has become of a particle.
+    """Raise the GuardStop for the fault of a particle.
 
     Raises:
-        PluginFault: weights that cannot be right have made it so.
+        PluginFault: wrong weights of a shape function caused the fault.
     """
     s.require_tables()
     p, axes = s.particles, s.grid.axes
@@ -219,7 +219,7 @@ def stop(s: SceneView, index: int, scattered: bool = False, drawn_out: bool = Fa
 
 
 def remedy(s: SceneView) -> str:
-    """The likeliest cause of a run that diverges, and what to try."""
+    """The most likely cause of a diverging run, and a cure."""
     scheme = s.case.scheme
     exceeded = warnings(scheme, s.limits, s.time_step)
     if exceeded:
@@ -240,7 +240,7 @@ def remedy(s: SceneView) -> str:
 
 
 def _torn(s: SceneView) -> float:
-    """Part of the volume in boxes that are drawn out longer than a cell along an axis."""
+    """Part of the volume in boxes that are longer than a cell along an axis."""
     p = s.particles
     volume = np.where(np.isfinite(p.volume), p.volume, 0.0)
     drawn_out = (2 * p.box > s.grid.cell_size * (1 + 1e-9)).any(axis=1)
@@ -248,7 +248,7 @@ def _torn(s: SceneView) -> float:
 
 
 def _open_faces(s: SceneView, position: np.ndarray) -> list[str]:
-    """Of the faces beyond which a position lies, those that are open."""
+    """The open faces beyond which a position lies."""
     faces = s.case.grid.faces
     lower, upper = s.case.domain_bounds
     beyond = [
@@ -272,7 +272,7 @@ def _stopped(s: SceneView, guard: str, index: int, what: str, why: str) -> Guard
 
 
 def _at_walls(s: SceneView, place: np.ndarray) -> str:
-    """The walls within a cell of a place, m, in words that follow the name of what is there."""
+    """The walls within a cell of a position, m, in words that follow the name of a particle."""
     if not np.isfinite(place).all():
         return ""
     with blaming_plugins(plugins_of(s.case)):

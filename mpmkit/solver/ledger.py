@@ -1,7 +1,7 @@
-"""The account of a scene: mass, momentum and energy, and by what each has changed.
+"""The ledger of a scene: mass, momentum and energy, and the cause of each change.
 
-What there is of each is the sum over the causes. Of mass the rest is rounding, of momentum what the scheme
-loses, of energy what the material has dissipated and the scheme has made or lost.
+The present amount of each is the sum over the causes. The cause "rest" is rounding for mass, the loss by the
+scheme for momentum, and for energy the dissipation by the material plus gains and losses of the scheme.
 """
 
 from __future__ import annotations
@@ -16,29 +16,30 @@ from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
 CAUSES = ("start", "in", "out", "gravity", "walls", "refinement", "redistribution", "rest")
-"""By what mass, momentum and energy change; ``out`` is negative."""
+"""Causes of changes of mass, momentum and energy; ``out`` is negative."""
 START, IN, OUT, GRAVITY, WALLS, REFINEMENT, REDISTRIBUTION, REST = range(len(CAUSES))
 MASS, ENERGY = 0, -1
-"""Entries of what there is: mass, kg, momentum along each axis, N s, and energy, J."""
+"""Number of entries: mass, kg, momentum along each axis, N s, and energy, J."""
 
 
 def present(p: Particles) -> np.ndarray:
-    """What there is, ``(2 + dim,)``: mass, momentum, and energy of motion, shape and pressure."""
+    """Present amounts, ``(2 + dim,)``: mass, momentum, and kinetic plus stored energy."""
     energy = kinetic_energy(p) + strain_energy(p) + compressive_energy(p)
     momentum = (p.mass[:, None] * p.velocity).sum(axis=0)
     return np.array([float(np.sum(p.mass)), *momentum, energy])
 
 
 class Ledger:
-    """Keeps the account. Potential energy is not in it: what gravity does is its work.
+    """Keeps the ledger. Potential energy is not included; gravity appears by its work.
 
-    Along an axis that is not periodic that work is what the particles have come down by. A periodic axis has
-    no height: there it is the integral of its power over time, by the trapezoidal rule from look to look.
-    In an axisymmetric scene momentum along r is no vector, and its rest holds the hoop stress.
+    Along an axis that is not periodic, this work is the loss of potential energy of the particles. Along a
+    periodic axis there is no height: the work is the time integral of the power, by the trapezoidal rule
+    between checks. In an axisymmetric scene, momentum along r is not conserved: its rest contains the hoop
+    stress.
 
     Attributes:
         begun: whether the start has been written down.
-        entries: ``(causes, 2 + dim)``, of those causes that are written down when they happen.
+        entries: ``(causes, 2 + dim)``, for the causes that are recorded when they occur.
         mass_out: kg that each sink has taken so far, in the order of the case.
     """
 
@@ -49,20 +50,20 @@ class Ledger:
         self.begun = False
         self.entries = np.zeros((len(CAUSES), 2 + grid.dim))
         self.mass_out = np.zeros(sinks)
-        self._height = 0.0  # J, the potential energy that there would be if gravity had done no work
+        self._height = 0.0  # J, the potential energy if gravity had done no work
         self._looked = self._power = self._work_along = 0.0
-        self._changed = self._mass_time = 0.0  # s, since when the mass is as it is; kg s, up to then
+        self._changed = self._mass_time = 0.0  # s, time of the last change of mass; kg s, ∫ m dt up to then
 
     def state(self) -> State:
         """All its entries."""
         return plain_state(self)
 
     def restore(self, state: State) -> None:
-        """Take its entries back."""
+        """Restore its entries."""
         restore_plain(self, state)
 
     def begin(self, p: Particles, time: float) -> None:
-        """Write down what there is at the start, the first time that it is called."""
+        """Record the initial amounts, at the first call."""
         if self.begun:
             return
         self.begun = True
@@ -73,7 +74,7 @@ class Ledger:
 
     @property
     def mass(self) -> float:
-        """kg that there must be."""
+        """Mass that the particles must have, kg."""
         return float(self.entries[[START, IN, OUT], MASS].sum())
 
     def look(self, p: Particles, time: float) -> None:
@@ -82,14 +83,14 @@ class Ledger:
         self._looked, self._power = time, self._power_along(p)
 
     def refined(self, before: np.ndarray, height: float, p: Particles) -> None:
-        """Write down what a refinement has changed, from what there was and its potential energy."""
+        """Record the changes by a refinement, given the amounts and the potential energy before."""
         self.entries[REFINEMENT] += present(p) - before
         self._height += potential_energy(p, self._downwards) - height
 
     def taken_out(
         self, before: np.ndarray, height: float, p: Particles, masses: np.ndarray, time: float
     ) -> None:
-        """Write down what sinks have taken, ``masses`` by each of them, from what there was before."""
+        """Record the removal by sinks, ``masses`` by each sink, given the amounts before."""
         self._mass_time += (time - self._changed) * self.mass
         self._changed = time
         self.mass_out += masses
@@ -103,7 +104,8 @@ class Ledger:
         return potential_energy(p, self._downwards)
 
     def account(self, p: Particles, time: float, given: Mapping[int, tuple[np.ndarray, float]]) -> np.ndarray:
-        """The whole account, ``(causes, 2 + dim)``, with the rest: its sum over the causes is what there is.
+        """The whole ledger, ``(causes, 2 + dim)``, with the rest; its sum over the causes is the present
+        amount.
 
         Args:
             p: the particles.

@@ -1,4 +1,4 @@
-"""What the history records of a scene: spread, heights, energies, mass and momentum."""
+"""Scalars of a scene for the history: spread, heights, energies, mass and momentum."""
 
 from __future__ import annotations
 
@@ -17,25 +17,26 @@ from .particles import Particles
 from .surface import mean_top
 
 SAME = 0.025
-"""Cells to which the nodes tell where a surface is."""
+"""Accuracy, in cells, of a surface position found from the nodes."""
 
 
 @dataclass(frozen=True)
 class Measures:
-    """Measures a scene. Lengths are of the material in the domain, what a symmetry plane has cut off
-    included; masses, momenta and energies are of the part that is simulated.
+    """Measures a scene. Lengths are those of the material in the domain, including its mirror image at a
+    symmetry plane; masses, momenta and energies are those of the simulated part.
 
-    Along each axis the material reaches from a particle as far as its box, half-size l, in two limits:
+    Along each axis, the material extends around a particle at x as far as its box (half-size l), with two
+    limits:
 
         from x - min(l, Δx/2) to x + min(l, Δx/2), cut off at the faces of the domain.
 
-    *Half a cell*: a box stands for the volume around a particle while its neighbours share nodes with it.
-    The grid gives no weight to the part of a box that is beyond a cell, and nothing ties its ends to the
-    material any more (``fractured_fraction``): strain alone draws a box in a splash out to kilometres.
-    *The faces*: no material is behind a wall. Boxes of an undeformed body, of a sheet, and of a body that is
-    drawn out until a box is as long as a cell, meet end to end: their lengths are exact.
+    *Half a cell*: a box represents the volume around a particle as long as its neighbours share nodes with
+    it. The grid gives no weight to the part of a box beyond a cell, and the ends of such a box are no longer
+    connected to the material (``fractured_fraction``): in a splash, strain can make a box kilometres long.
+    *The faces*: no material is behind a wall. The boxes of an undeformed body, of a sheet, and of a body
+    stretched until its boxes are as long as a cell meet without gaps: their lengths are exact.
 
-    Particles that are not in the domain, which a guard is about to stop the run for, are left out.
+    Particles outside the domain are left out; a guard will stop the run because of them.
     """
 
     case: Case
@@ -44,7 +45,7 @@ class Measures:
     axis_position: np.ndarray
     """Horizontal position of the body's axis, m, from the grid's corner."""
     planes: list[float | None]
-    """Where a plane or axis of symmetry cuts each horizontal axis of the grid, m."""
+    """Position of a plane or axis of symmetry on each horizontal axis of the grid, m."""
 
     @classmethod
     def of(cls, case: Case, grid: Grid, particles: Particles) -> Measures:
@@ -64,7 +65,7 @@ class Measures:
         axis_height = self._axis_height(p, inside, crowded)
         filled = density_of(crowded, p, self.grid, self.case.space_.radial)
         squared = np.einsum("pi,pi->p", p.velocity, p.velocity)
-        # Positions start anew at a periodic face: the work of gravity along its axis has no potential.
+        # Positions are wrapped at a periodic face: the work of gravity along its axis has no potential.
         gravity = np.where(self.grid.periodic, 0.0, self.case.gravity_vector)
         return {
             "spread_diameter": self.spread(p),
@@ -85,7 +86,7 @@ class Measures:
         }
 
     def spread(self, p: Particles) -> float:
-        """Mean diameter over the horizontal axes, m; along a periodic axis nothing has a diameter."""
+        """Mean diameter over the horizontal axes, m; periodic axes do not count."""
         grid, periodic, diameters = self.grid, self.grid.periodic, []
         ends = extents(p.position, p.box, grid.dim - 1, grid.extent, periodic, self._longest)
         for a, (low, high) in enumerate(ends.tolist()):
@@ -96,25 +97,27 @@ class Measures:
         return sum(diameters) / len(diameters) if diameters else math.nan
 
     def height(self, p: Particles) -> float:
-        """Top of the material above the grid's lower face, m; not a number where there is none."""
+        """Top of the material above the grid's lower face, m; NaN without material."""
         return self._height(p, self._inside(p))
 
     def fractured(self, p: Particles) -> float:
-        """Part of the volume in boxes longer than a cell: its neighbours share no cell with it any more."""
+        """Part of the volume in boxes longer than a cell: their neighbours no longer share a cell with
+        them."""
         longest = p.box.max(axis=1)
         apart = longest > self.grid.cell_size / 2 * (1 + 1e-9)
         return float(np.sum(p.volume[apart]) / np.sum(p.volume))
 
     def _height(self, p: Particles, of: np.ndarray) -> float:
-        """Top of some particles above the grid's lower face, m; not a number where there are none."""
+        """Top of some particles above the grid's lower face, m; NaN if there are none."""
         tops = (p.position[:, -1] + np.minimum(p.box[:, -1], self._longest))[of]
         return min(float(tops.max()), float(self.grid.extent[-1])) if len(tops) else np.nan
 
     def _axis_height(self, p: Particles, inside: np.ndarray, crowded: Crowding | None) -> float:
-        """Height of the surface by the nodes; by the boxes where the two agree, or where nodes cannot tell.
+        """Height of the surface: from the boxes if it agrees with that from the nodes or the latter is not
+        known; otherwise from the nodes.
 
-        The tops of boxes are exact in a body that has kept its order. In disorder the highest of them is that
-        of a particle that lies on the others.
+        The tops of boxes are exact in a body with ordered particles. In disorder, the highest box is that of
+        a single particle on top of the others.
         """
         by_boxes = self._height(p, inside & self._near_axis(p))
         if crowded is None or math.isnan(by_boxes):
@@ -126,13 +129,13 @@ class Measures:
 
     @property
     def _longest(self) -> float:
-        """m, half-size of the longest box that counts as it is."""
+        """m, largest half-size of a box in lengths; longer boxes are cut to it."""
         return self.grid.cell_size / 2
 
     def _inside(self, p: Particles) -> np.ndarray:
-        """Particles in the domain; one whose position is not finite is not."""
+        """Particles in the domain; without particles whose position is not finite."""
         within = (p.position >= 0) & (p.position <= self.grid.extent)
-        # Along a periodic axis a step may lead out of the domain, and the next one wraps it.
+        # Along a periodic axis, a step may lead out of the domain; the next step wraps the position.
         return np.all((within | self.grid.periodic) & np.isfinite(p.position), axis=1)
 
     def _near_axis(self, p: Particles) -> np.ndarray:
@@ -142,7 +145,7 @@ class Measures:
 
 
 def _symmetry_plane(case: Case, grid: Grid, axis: int) -> float | None:
-    """Where a plane or axis of symmetry cuts an axis of the grid, m from its corner; None if none does."""
+    """Position of a plane or axis of symmetry on an axis of the grid, m from its corner, or None."""
     if case.space_.radial and axis == 0:
         return 0.0
     for side, position in (("min", 0.0), ("max", float(grid.extent[axis]))):

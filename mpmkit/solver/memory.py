@@ -26,21 +26,21 @@ from .walls.wall_nodes import MARGIN as NEAR_MARGIN
 DOUBLE = 8
 INDEX = 4
 PASSING = 4
-"""Doubles a particle that are held for a moment: keys and order of a sort, or averages and a law's own."""
+"""Temporary doubles per particle: keys and order of a sort, or averages and those of a law."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
-"""A node's record, the sums of an average, and the average; its room, its crowding, and what makes them."""
+"""Doubles per node: its record, sums of an average, the average, its volume, its crowding, and their sums."""
 MIRRORED = 4
-"""Doubles of a node of a lattice of a redistribution: its sums, its crowding, and its room."""
+"""Doubles per node of a redistribution's lattice: its sums, its crowding, and its volume."""
 COPY = 1.125
-"""Size of the buffer of a checkpoint over its content: Python's grow by an eighth at a time."""
+"""Size of a checkpoint's buffer relative to its content: Python's buffers grow by an eighth at a time."""
 LOOKED_AT = 1 << 12
 """Most points at which the nodes near a wall are counted."""
 MARGIN = 5
-"""Nodes along an axis by which the window is wider than the cells of the material."""
+"""Nodes along an axis that the window has in addition to the cells of the material."""
 
 
 def expected_particles(case: Case) -> float:
-    """Particles of a case, from the exact volumes of its bodies."""
+    """Number of particles of a case, from the exact volumes of its bodies."""
     return sum(
         expected_count(
             body.shape,
@@ -54,9 +54,9 @@ def expected_particles(case: Case) -> float:
 
 
 def expected_bytes(case: Case, particles: float) -> int:
-    """Memory that a run takes at its start, beside the 200 MB or so of Python and its libraries.
+    """Memory of a run at its start, without the 200 MB or so of Python and its libraries.
 
-    As the material spreads, so does the window of nodes that covers it; particles take most by far.
+    As the material spreads, the window of nodes grows; but particles need most of the memory.
     """
     kept = _kept_rows(case) * _doubles_per_row(case) * DOUBLE
     of_particles = particles * (bytes_per_particle(case) + kept)
@@ -64,7 +64,7 @@ def expected_bytes(case: Case, particles: float) -> int:
 
 
 def checkpoint_bytes(case: Case, particles: float) -> int:
-    """Memory that is held for a moment while a checkpoint is written.
+    """Temporary memory while a checkpoint is written.
 
     It is a copy of the state of all particles, of their last weights, and of the rows of the history that
     are kept.
@@ -75,7 +75,7 @@ def checkpoint_bytes(case: Case, particles: float) -> int:
 
 
 def bytes_per_particle(case: Case) -> int:
-    """State of a particle, its tables of weights, and what is held of it for a moment."""
+    """Bytes per particle: its state, its tables of weights, and temporary data."""
     dim, support = case.space_.dim, case.scheme.shape.support
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
@@ -83,7 +83,7 @@ def bytes_per_particle(case: Case) -> int:
 
 
 def _redistributed(case: Case) -> int:
-    """Bytes a particle that a redistribution holds for a moment: splines of two lattices, its shift."""
+    """Temporary bytes per particle of a redistribution: splines of two lattices, its shift."""
     if not redistributes(case.scheme.redistribution):
         return 0
     dim = case.space_.dim
@@ -92,7 +92,7 @@ def _redistributed(case: Case) -> int:
 
 
 def _doubles_per_node(case: Case) -> float:
-    """Numbers that a node holds, with those of a finer lattice where there is a redistribution."""
+    """Doubles per node, including those of a finer lattice if there is a redistribution."""
     if not redistributes(case.scheme.redistribution):
         return DOUBLES_PER_NODE
     dim = case.space_.dim
@@ -101,10 +101,10 @@ def _doubles_per_node(case: Case) -> float:
 
 
 def _state_doubles(case: Case) -> int:
-    """Numbers that a particle carries from step to step."""
+    """Doubles that a particle carries from step to step."""
     dim = case.space_.dim
     laws = [body.material.constitutive_law for body in case.bodies]
-    with blaming_plugins(plugins_of(case)):  # they say what a particle carries
+    with blaming_plugins(plugins_of(case)):  # plug-ins define what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
     number_mass_volumes_pressures_rate_parts = 10
@@ -128,7 +128,7 @@ def window_nodes(case: Case) -> float:
 
 
 def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner, m, of the box around all bodies, as far as it is in the domain."""
+    """Lower and upper corner, m, of the box around all bodies, cut at the domain."""
     bounds = [body.shape.bounds(case.space_) for body in case.bodies]
     domain_lower, domain_upper = case.domain_bounds
     lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
@@ -137,7 +137,7 @@ def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wall_bytes(case: Case) -> float:
-    """Memory of the walls: each knows every node of the window, and much more of those near it."""
+    """Memory of the walls: some data for every node of the window, and more for nodes near a wall."""
     dim, corners = case.space_.dim, 1 << case.space_.dim
     number_place_and_face, free_distance_and_push, marks = 3 * dim * DOUBLE, 3 * DOUBLE, 2
     found_normal_and_velocity, kinds_of_node, distance = 4 * dim, 5, 1
@@ -153,7 +153,7 @@ def wall_bytes(case: Case) -> float:
 
 
 def _part_near(surface: audit.AuditedSurface, case: Case) -> float:
-    """Part of the window of nodes that is near a wall when a run begins."""
+    """Part of the nodes of the window that is near a wall at the start."""
     lower, upper = _extent(case)
     count = max(2, round(LOOKED_AT ** (1 / len(lower))))
     places = np.indices((count,) * len(lower)).reshape(len(lower), -1).T + 0.5
@@ -169,7 +169,7 @@ def _kept_rows(case: Case) -> float:
 
 
 def _doubles_per_row(case: Case) -> int:
-    """Numbers a particle that a row of the history keeps, twice: once more while the file is written."""
+    """Doubles per particle and row of the history, counted twice: again while the file is written."""
     width = {"component": case.space_.dim, "tensor_component": 6}
     known = particle_variables(case)
     fields = [known[name] for name in case.output.particle_history]
@@ -177,10 +177,10 @@ def _doubles_per_row(case: Case) -> int:
 
 
 def require_memory(case: Case) -> None:
-    """Refuse a case that needs more memory than there is for this run, its first checkpoint included.
+    """Refuse a case that needs more memory than is available, its first checkpoint included.
 
     Raises:
-        CaseError: says how much is needed and how much there is.
+        CaseError: the sentence gives the needed and the available memory.
     """
     particles = expected_particles(case)
     needed = expected_bytes(case, particles) + checkpoint_bytes(case, particles)
@@ -197,7 +197,7 @@ def require_memory(case: Case) -> None:
 
 
 def _too_wide(case: Case, needed: float, left: str) -> str:
-    """The sentence where not the particles take the memory but the nodes around and between them."""
+    """The sentence if the nodes around and between the bodies need the memory, and not the particles."""
     lower, upper = _extent(case)
     spans = " × ".join(f"{span:.4g}" for span in upper - lower)
     between = ", the gap between them included," if len(case.bodies) > 1 else ""

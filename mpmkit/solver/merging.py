@@ -1,4 +1,4 @@
-"""Two particles made one, with all that they have together."""
+"""Merging of two particles into one that keeps their sums."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ import numpy as np
 from .particles import Particles
 
 WIDEST = 0.8
-"""Sides, in cells, beyond which no box of a merged particle gets: it must not be split again at once."""
+"""Largest side, in cells, of the box of a merged particle: it must not be split again at once."""
 
 
 def merge(p: Particles, pairs: np.ndarray, cell_size: float, radial: bool) -> None:
-    """Make one particle of each of ``pairs``, ``(m, 2)`` indices of two of the same material and body.
+    """Merge each of ``pairs``, ``(m, 2)`` indices of two particles of the same material and body.
 
     With the weights w = m / Σ m, which are also those of the initial volumes,
 
         m = Σ m,   V0 = Σ V0,   V = Σ V,   J = Σ w J,   x = Σ w x,   v = Σ w v,   f = Σ w f
 
-    for stress, pressure and the state of the law. A mean with positive weights stays within every convex
-    yield surface, and stores no more than the two did where the stored energy is convex. In an axisymmetric
-    scene the radius is r = V0 / (2π A), with the areas A = V0 / (2π r) added up.
+    for stress, pressure and the state of the law. A mean with positive weights stays within a convex yield
+    surface, and stores no more energy than the two particles if the stored energy is convex. In an
+    axisymmetric scene the radius is r = V0 / (2π A), with the areas A = V0 / (2π r) added up.
 
-    The affine velocity is the linear field that fits the two best, over their boxes of second moments
-    M = l²/3, at distances d from x:
+    The affine velocity is the linear field that fits both particles best, over their boxes with the second
+    moments M = l²/3, at distances d from x:
 
         C Σ w (M + d dᵀ) = Σ w (C M + (v - v̄) dᵀ)
 
-    So a linear field stays as it is, and so does the angular momentum of the two boxes. The new box takes its
-    shape from that second moment, and its volume is that of the two boxes.
+    So a linear field and the angular momentum of the two boxes are kept. The shape of the new box follows
+    from that second moment, and its volume is that of the two boxes.
 
     Args:
-        p: changed in place; the one with the lower number stays, and no number is given again.
-        pairs: each particle in one of them at most.
+        p: changed in place; the particle with the lower number stays, and numbers are never reused.
+        pairs: each particle in at most one of them.
         cell_size: m.
         radial: whether axis 0 is the radius of an axisymmetric scene.
     """
@@ -74,7 +74,7 @@ def merge(p: Particles, pairs: np.ndarray, cell_size: float, radial: bool) -> No
 
 
 def _mean(array: np.ndarray, pairs: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """w_0 f_0 + w_1 f_1, as f_0 + w_1 (f_1 - f_0): what two have in common stays, to the bit."""
+    """w_0 f_0 + w_1 f_1, as f_0 + w_1 (f_1 - f_0): equal values stay the same, bit by bit."""
     first, second = array[pairs[:, 0]], array[pairs[:, 1]]
     return first + weight[:, 1].reshape(-1, *(1,) * (array.ndim - 1)) * (second - first)
 
@@ -98,11 +98,11 @@ def _affine(p: Particles, pairs: np.ndarray, weight: np.ndarray, apart: np.ndarr
 
 
 def _joint_box(box: np.ndarray, weight: np.ndarray, apart: np.ndarray, widest: float) -> np.ndarray:
-    """Half sides, ``(m, dim)``, by the second moment of two boxes ``(m, 2, dim)``; with their volume."""
+    """Half sides, ``(m, dim)``, from the second moment of two boxes ``(m, 2, dim)``, and their volume."""
     dim = box.shape[2]
     shape = np.sqrt(3 * np.einsum("kp,kpi->ki", weight, box**2 / 3 + apart**2))
     volume = np.prod(box, axis=2).sum(axis=1)
-    # No side gets wider than that, or than it was: what is cut off one is given to the others.
+    # No side exceeds the limit, or its size before: what is cut off one side is given to the others.
     most = np.maximum(widest, box.max(axis=1))
     held = np.zeros(shape.shape, dtype=bool)
     joint = shape

@@ -1,4 +1,4 @@
-"""What a node has room for: the volume of the domain, weighted by the node's own linear function."""
+"""Volume of a node: the volume of the domain, weighted by the linear function of the node."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .grid import Grid, Window
 def node_volumes(window: Window, radial: bool, on_axis: float = math.inf) -> np.ndarray:
     """V_n = ∫ N_n dV over the domain, m³, of every node of a window, ``(nodes,)``.
 
-    A body whose boxes tile it has Σ_p V_p N_np = V_n at a node inside, whatever the shape function, and less
-    at its surface. What lies on ghosts counts to their images, so that these have room for both. Only on an
-    axis does it depend on the shape function: ``on_axis`` there, in Δx² turns; default: infinity.
+    If the boxes of a body tile it, Σ_p V_p N_np = V_n at an inner node for every shape function, and less at
+    its surface. Volume on ghosts counts to their images, whose V_n covers both. Only on an axis, V_n depends
+    on the shape function: there it is ``on_axis``, in Δx² turns; default: infinity.
     """
     grid = window.grid
     volumes = np.ones(1)
@@ -27,7 +27,7 @@ def node_volumes(window: Window, radial: bool, on_axis: float = math.inf) -> np.
 
 
 def _straight(grid: Grid, axis: int, number: np.ndarray) -> np.ndarray:
-    """Half a cell at walls; an open face has none, and neither has a periodic axis."""
+    """Half a cell at walls; 0 at an open face and along a periodic axis."""
     length = np.full(len(number), grid.cell_size)
     for side, wall in enumerate((0, grid.cells[axis])):
         if grid.faces[axis, side] not in (OPEN, PERIODIC):

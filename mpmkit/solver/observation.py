@@ -1,4 +1,4 @@
-"""A scene as diagnostics and particle fields see it: arrays that cannot be written to."""
+"""Read-only view of a scene for diagnostics and particle fields."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .view import SceneView
 
 
 class Observation:
-    """``contracts.Observed`` of the present step; what is computed is computed when it is asked for."""
+    """``contracts.Observed`` of the present step; values are computed when they are needed."""
 
     def __init__(self, scene: SceneView) -> None:
         self._scene = scene

@@ -1,4 +1,4 @@
-"""The operations of a step on the particles and nodes of one scene: the contract ``Operations`` made real."""
+"""The operations of a step on one scene; implements the contract ``Operations``."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from .walls import Faces, Walls
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
 FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
-"""Arrays that are made of the case, or that a step fills before it reads them; the weights are kept apart."""
+"""Arrays made from the case, or filled by a step before it reads them; weights are saved separately."""
 
 
 class SceneOperations:
-    """What one step is made of. Shape functions are evaluated in ``begin`` and hold for the whole step."""
+    """The operations of one step. Shape functions are evaluated in ``begin`` and used in the whole step."""
 
     def __init__(self, case: Case, grid: Grid, particles: Particles) -> None:
         dim, scheme = grid.dim, case.scheme
@@ -63,12 +63,12 @@ class SceneOperations:
         self.allocate()
 
     def allocate(self) -> None:
-        """Tables and scratch for as many particles as there are; to be called again when there are more."""
+        """Allocate tables and scratch arrays for all particles; call again when particles were added."""
         n, dim, support = len(self.particles), self.grid.dim, self.scheme.shape.support
         self.sorting = Sorting(self.grid, self.particles, self.window)
         self.walls.follow(self.sorting)
         self.base = np.zeros((n, dim), dtype=np.int32)
-        # One block of memory, so that what a sort needs for a moment can lie where the tables will be again.
+        # One block of memory: a sort uses the memory of the tables for its temporary arrays.
         size = n * dim * support
         self._tables = np.zeros(max(2 * size, n * WIDEST))
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
@@ -84,10 +84,10 @@ class SceneOperations:
         self._no_rows = np.zeros((0, dim))
 
     def renew(self, time: float) -> None:
-        """Allocate, sort, and lay the walls at a time, s, where there are other particles than before.
+        """Allocate, sort, and lay the walls at a time, s, after particles were added or removed.
 
-        So what is left is whole: a checkpoint of it holds what the contacts of walls remember. A particle
-        that is lost is left for ``begin`` to find.
+        Afterwards the state is complete: a checkpoint contains the memory of wall contacts. ``begin`` reports
+        a particle that has left the grid.
         """
         self.allocate()
         if self._sort() is None:
@@ -97,7 +97,7 @@ class SceneOperations:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own, in the order in which it is restored."""
+        """The components with a state, in the order in which they are restored."""
         return {
             "window": self.window,
             "sorting": self.sorting,
@@ -108,11 +108,11 @@ class SceneOperations:
         }
 
     def state(self) -> State:
-        """Its numbers, its components, and the last weights, which the guard of the mass reads."""
+        """Its numbers, its components, and the last weights, which the mass guard reads."""
         return plain_state(self, but=FILLED_ANEW) | {"weight/": self.weight} | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Take back a state, for particles that are in theirs already."""
+        """Restore a state; the particles must be restored before."""
         self.allocate()
         self.weight[...] = state["weight/"]
         restore(self.components, state)
@@ -124,7 +124,7 @@ class SceneOperations:
         """Sort if needed, move the walls to a time, s, evaluate the shape functions.
 
         Returns:
-            A particle that left the grid, if any did.
+            Index of a particle that left the grid; None if there is none.
         """
         lost = self._sort()
         if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
@@ -163,7 +163,7 @@ class SceneOperations:
         audit.require_finite(shape, "a 'hoop'", self.hoop, numbers, ())
 
     def start(self) -> None:
-        """Before the first step: read the affine part of an initial velocity off the grid."""
+        """Before the first step: compute the affine part of an initial velocity from the grid."""
         if self.scheme.velocity.affine and self.particles.velocity.any():
             self.map_to_grid(forces=False)
             self._take(affine=True)
@@ -173,7 +173,7 @@ class SceneOperations:
         self._account.begin()
         try:
             self.scheme.order.step(self._for_order, dt)
-        except PluginFault:  # of one that was given nonsense, if the weights are wrong
+        except PluginFault:  # wrong weights may be the real cause of the fault
             self.require_tables()
             raise
         self._account.require_whole(self.scheme.order, dt)
@@ -220,14 +220,14 @@ class SceneOperations:
         nodes.fold_held(self.window.nodes, *planes, first, last, active.held)
 
     def _faces(self) -> tuple[Any, ...]:
-        """What the kernels need to let the faces act, and to count what these give."""
+        """Arguments of the kernels that apply the faces and sum up their impulses."""
         active, grid = self.sorting.active, self.grid
         return (
             *active.arguments, grid.friction, active.places, grid.cell_size, active.held, self.walls.touched
         )  # fmt: skip
 
     def _walls_act(self, dt: float | None = None) -> None:
-        """Let walls constrain the velocities as mapped, or as solved in a step of ``dt`` s."""
+        """Apply the walls to the velocities after mapping, or after the momentum equation (step ``dt``)."""
         if self.walls.touched:
             self.walls.constrain(self.faces.given(dt is not None), dt, self._rehearsing)
             self.faces.fill(self.window, self.sorting.active, dt)
@@ -236,7 +236,7 @@ class SceneOperations:
 
     @property
     def mapped_mass(self) -> float | None:
-        """Mass that the nodes got in the last step, kg; None where there was none since they were made."""
+        """Mass mapped to the nodes in the last step, kg; None if there was no step since they were made."""
         return float(self.window.nodes[:, 0].sum()) if self._stepped else None
 
     def solve_momentum(self, dt: float) -> None:
@@ -254,7 +254,7 @@ class SceneOperations:
         self.scheme.velocity.map_to_particles(self._for_velocity, dt)
         by_itself = before is None or not np.array_equal(before, self._places())
         self._account.require_moved(self.scheme.velocity, dt, by_itself)
-        if self._gradient_due:  # the velocity update has ways of its own
+        if self._gradient_due:  # the velocity update computes its own
             self.update_velocity_gradient()
 
     def _moves(self) -> bool:
@@ -262,7 +262,7 @@ class SceneOperations:
         return bool(self.gravity.any() or self.particles.velocity.any())
 
     def _places(self) -> np.ndarray:
-        """Where some of the particles are, to see whether they are moved."""
+        """Positions of some of the particles, to detect whether they are moved."""
         return self.particles.position[: audit.SAMPLE].copy()
 
     def move_particles(self, dt: float, *, flip: float, affine: bool = False) -> None:
@@ -325,7 +325,7 @@ class SceneOperations:
             part = group.part
             if group.law.uses_equation_of_state:
                 volumes.assign(p.pressure[part], self._pressure(group, p.volume_ratio[part]))
-            elif group.law.needs_deformation_gradient:  # its volume must be that of the F that it sees
+            elif group.law.needs_deformation_gradient:  # its volume must agree with the F given to the law
                 assert p.deformation_gradient is not None
                 tensors.determinant(p.deformation_gradient[part], p.volume_ratio[part])
                 np.multiply(p.volume_ratio[part], p.initial_volume[part], out=p.volume[part])
@@ -368,7 +368,7 @@ class SceneOperations:
     # --- Volumes
 
     def _treated(self, field: np.ndarray) -> np.ndarray:
-        """What the volumetric treatment makes of a field; a law with a pressure of its own keeps its own."""
+        """A field after the volumetric treatment; laws that compute their own pressure keep their values."""
         author = self.scheme.volumetric
         if self._rehearsing:
             rehearsed = audit.Rehearsed(field)
@@ -380,7 +380,7 @@ class SceneOperations:
             if self._auditing:
                 audit.require_finite(author, "an average", treated, self.particles.number, [field])
             if not self._all_fluid:
-                treated = treated.copy()  # which may be one that the treatment keeps
+                treated = treated.copy()  # the treatment may keep a reference to it
                 for group in self.particles.groups:
                     if not group.law.uses_equation_of_state:
                         treated[group.part] = field[group.part]
@@ -412,7 +412,7 @@ class SceneOperations:
         return self.averager.at_particles()
 
     def _weights(self, weighting: Weighting) -> np.ndarray:
-        """Weight of every particle in an average; volumes only of what has an equation of state."""
+        """Weight of every particle in an average; volumes only for particles with an equation of state."""
         p = self.particles
         if weighting not in ("mass", "volume"):
             asked = f"asked for an average by {weighting!r}; it must be by 'mass' or 'volume'"

@@ -1,4 +1,4 @@
-"""Bodies that begin in a wall."""
+"""Bodies that overlap a wall at the start."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..registry import audit
 from ..registry.blame import blaming_plugins
 
 ROUNDING = 0.25
-"""How deep the centre of a particle may be in a wall, over the half-width of its box along the normal: the
-outline of a body is known to the particle, and a mesh may be a polygon where the other is round."""
+"""How deep the centre of a particle may be in a wall, relative to the half-width of its box along the normal:
+the outline of a body is only known to a particle's size, and a mesh may be a polygon beside a round wall."""
 
 
 def refuse_overlaps_with_walls(case: Case, samples: Iterable[tuple[int, Sample]]) -> None:
-    """Refuse bodies that share room with a wall that is there at the start, by their particles.
+    """Refuse bodies whose particles overlap a wall that is present at the start.
 
-    A particle counts by the part of its box that is beyond the surface, and only where its centre is.
+    A particle counts only if its centre is in the wall, with the part of its box beyond the surface.
 
     Args:
         case: the scene.

@@ -1,4 +1,4 @@
-"""What frames and histories hold of every particle."""
+"""Fields of the particles in frames and histories."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from .stresses import cauchy_stress, mean_pressure, shear_stress
 from .view import SceneView
 
 ROUNDING = 1e-9
-"""Part of the yield stress by which a stress must exceed it to count as yielded."""
+"""A stress counts as yielded if it exceeds the yield stress by this part of it."""
 VTK_ORDER = [0, 1, 2, 5, 3, 4]
 """Symmetric tensors of VTK are xx, yy, zz, xy, yz, xz."""
 
 
 def yielded(p: Particles) -> np.ndarray:
-    """1 where the shear stress is beyond the yield point of the law, ``(n,)``, else 0.
+    """1 where the shear stress exceeds the yield stress of the law, ``(n,)``, else 0.
 
-    For a law that has no yield point, 1 where the material is sheared at all.
+    For a law without yield stress: 1 where the shear rate is not zero.
     """
     stress, rate = shear_stress(p), shear_rate(p.velocity_gradient)
     found = np.zeros(len(p), dtype=np.int32)
@@ -50,14 +50,14 @@ PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
     "shear_stress": lambda p, grid: shear_stress(p),
     "yielded": lambda p, grid: yielded(p),
 }
-"""Particle fields that a history can keep, beside the state variables."""
+"""Particle fields that a history can keep, besides the state variables."""
 
 
 def history_fields(scene: SceneView) -> dict[str, np.ndarray]:
-    """The fields that a row keeps.
+    """The particle fields of a row.
 
     Raises:
-        PluginFault: a particle field is none.
+        PluginFault: a particle field is not valid.
     """
     case, p = scene.case, scene.particles
     names = case.output.particle_history
@@ -87,7 +87,7 @@ def frame_fields(scene: SceneView) -> dict[str, np.ndarray]:
     """What a frame shows of every particle; docs/cases.md has the units.
 
     Raises:
-        PluginFault: a particle field is none.
+        PluginFault: a particle field is not valid.
     """
     p = scene.particles
     return {

@@ -1,4 +1,4 @@
-"""The particles: a structure of arrays, in groups of one material. Refinement alone replaces the arrays."""
+"""The particles: a structure of arrays, in groups of one material. Only refinement replaces the arrays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..registry.audit import require_number, require_sentences
 from .stateful import State, plain_state, restore_plain
 
 STIFFER = 1.05
-"""Wave speed over that of the unstrained material from which on the step follows it."""
+"""The step follows the wave speed if it exceeds that of the unstrained material by this factor."""
 
 
 @dataclass
@@ -26,9 +26,9 @@ class Group:
     equation_of_state: EquationOfState
     density: float
     sound_speed: float | None
-    """m/s, of the equation of state, at present"""
+    """m/s, present sound speed of the equation of state"""
     mach: float | None
-    """largest Mach number, where the sound speed is to follow the flow"""
+    """largest Mach number, if the sound speed follows the flow; else None"""
     part: slice
     state: dict[str, np.ndarray]
 
@@ -37,7 +37,7 @@ class Group:
         """Fastest wave of the unstrained material, m/s.
 
         Raises:
-            PluginFault: it is no number, or not positive.
+            PluginFault: it is not a positive number.
         """
         given = self.law.wave_speed(self.density, self.sound_speed)
         speed = require_number(self.law, "wave_speed", given)
@@ -47,12 +47,12 @@ class Group:
 
     @property
     def remarks(self) -> list[str]:
-        """What the law has to say of itself in this material."""
+        """Sentences of the law about itself in this material."""
         said = self.law.remarks(self.density, self.sound_speed)
         return require_sentences(self.law, "remarks", said)
 
     def warnings(self, scale: Scale, until: float) -> list[str]:
-        """What should not be trusted of this material in a scene that runs for ``until`` s."""
+        """Warnings about this material in a scene that runs for ``until`` s."""
         said = self.law.warnings(self.density, self.sound_speed, scale, until)
         return require_sentences(self.law, "warnings", said)
 
@@ -72,7 +72,7 @@ class Particles:
     """State of all particles, n of them on dim axes. Positions are measured from the grid's lower corner."""
 
     number: np.ndarray
-    """(n,) what a particle is called, from first to last however the arrays are sorted."""
+    """(n,) number of each particle; it stays the same when the arrays are sorted."""
     body: np.ndarray
     position: np.ndarray
     velocity: np.ndarray
@@ -83,11 +83,11 @@ class Particles:
     volume: np.ndarray
     volume_ratio: np.ndarray
     half_size: np.ndarray
-    """(n, dim) half side lengths of the domains that the shape function sees, by its own rule"""
+    """(n, dim) half side lengths of the particle domains in the shape function, by its own rule"""
     initial_half_size: np.ndarray | None
-    """(n, dim) what they were, where they follow from the deformation as a whole"""
+    """(n, dim) their initial values, if they follow from the total deformation"""
     least_half_size: np.ndarray | None
-    """(n, dim) what they never fall below, where they follow the strain step by step"""
+    """(n, dim) their lower limits, if they follow the strain step by step"""
     box: np.ndarray
     """(n, dim) half side lengths of the material's boxes, m, by the normal strain along each axis"""
     velocity_gradient: np.ndarray
@@ -96,15 +96,15 @@ class Particles:
     pressure: np.ndarray
     """(n,) of the equation of state at the particle's own volume ratio"""
     mapped_pressure: np.ndarray
-    """(n,) what the volumetric treatment makes of it: the pressure that enters the internal force"""
+    """(n,) the pressure after the volumetric treatment; it enters the internal force"""
     quadrature: np.ndarray
-    """(n,) part of its volume with which a particle enters the internal force"""
+    """(n,) part of the volume of a particle that enters the internal force"""
     deformation_gradient: np.ndarray | None
     portion: np.ndarray
-    """(n,) of a particle of the start: one at first, a half for each half, the sum where two are merged"""
+    """(n,) share of an initial particle: 1 at the start, halved by a split, summed by a merge"""
     groups: list[Group] = field(default_factory=list)
     numbers_given: int = 0
-    """Numbers that were given out so far; none is given twice, though particles may be gone"""
+    """Count of particle numbers used so far; numbers of removed particles are not used again"""
 
     def __len__(self) -> int:
         return len(self.number)
@@ -114,11 +114,11 @@ class Particles:
         return self.position.shape[1]
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """Every array that has an entry a particle, by name."""
+        """Every array with one entry per particle, by name."""
         return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
 
     def state(self) -> State:
-        """All arrays, and of each group its numbers, its part and the state of its law."""
+        """All arrays, and for each group its numbers, its part and the state of its law."""
         found = plain_state(self)
         for index, group in enumerate(self.groups):
             own = plain_state(group) | {"part/": np.array([group.part.start, group.part.stop])}
@@ -127,7 +127,7 @@ class Particles:
         return found
 
     def restore(self, state: State) -> None:
-        """Take back a state of the same groups."""
+        """Restore a state of the same groups."""
         restore_plain(self, state)
         for index, group in enumerate(self.groups):
             prefix = f"group/{index}/"
@@ -149,7 +149,7 @@ class Particles:
             group.part = slice(int(start), int(stop))
 
     def new_numbers(self, count: int) -> np.ndarray:
-        """Numbers that no particle has, nor ever had."""
+        """New particle numbers, never used before."""
         self._count_numbers()
         first = self.numbers_given
         self.numbers_given += count
@@ -171,7 +171,7 @@ class Particles:
                 array[...] = array[local]
 
     def kinematics(self, group: Group) -> Kinematics:
-        """What the law of a group is given of its particles."""
+        """The particle data that are passed to the law of a group."""
         part, F = group.part, self.deformation_gradient
         return Kinematics(
             velocity_gradient=self.velocity_gradient[part],
@@ -183,11 +183,11 @@ class Particles:
         )
 
     def wave_speed(self, group: Group) -> float:
-        """Fastest wave in the present state of a group, m/s; that of the unstrained one where it is hardly
-        slower, so that steps do not change all the time.
+        """Fastest wave in the present state of a group, m/s. If the wave of the unstrained material is hardly
+        slower, its speed is used, so that the step does not change all the time.
 
         Raises:
-            PluginFault: the law gives none.
+            PluginFault: the law returns no valid speed.
         """
         given = group.law.present_wave_speed(self.kinematics(group), group.state)
         speed = require_number(group.law, "present_wave_speed", given)

@@ -1,4 +1,4 @@
-"""The particles of a scene as a refinement works on them: the contract ``Refining`` made real."""
+"""The particles of a scene for a refinement; implements the contract ``Refining``."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from .splitting import halve
 
 
 def refines(author: contract.Refinement) -> bool:
-    """Whether a refinement can ever change particles: one whose ``refine`` is that of the contract cannot."""
+    """Whether a refinement can change particles; one that does not override ``refine`` cannot."""
     return type(author).refine is not contract.Refinement.refine
 
 
 class Refiner:
-    """What a refinement is given, and what carries out what it asks for.
+    """The object that a refinement reads particles from, and that splits and merges them for it.
 
-    What it hands in is checked here: PluginFault if that cannot be done.
+    Requests of the refinement are checked here: PluginFault if one is not possible.
 
     Args:
-        case: tells the refinement, and the particles of a full cell of each body.
+        case: gives the refinement, and the number of particles in a full cell of each body.
         grid: its cells measure the boxes.
         particles: changed in place.
     """
@@ -43,10 +43,10 @@ class Refiner:
         self.acts = refines(self._author)
 
     def refine(self) -> bool:
-        """Let the refinement do what it will; whether there are other particles now.
+        """Run the refinement; return whether particles were added or removed.
 
         Raises:
-            OutOfMemory: there is no room for the halves.
+            OutOfMemory: there is not enough memory for the halves.
         """
         p = self._particles
         before = p.numbers_given, len(p)
@@ -90,12 +90,14 @@ class Refiner:
             count, there = np.bincount(index[: len(own)], minlength=cells), index[len(own) :]
             order = np.lexsort((p.number[asking], -p.box[asking, axis], there))
             asking, there = asking[order], there[order]
-            before = np.arange(len(there)) - np.searchsorted(there, there)  # of those that come there as well
+            before = np.arange(len(there)) - np.searchsorted(
+                there, there
+            )  # rank among the particles that enter the same cell
             found[asking[count[there] + before < self.full()[asking]]] = True
         return found
 
     def _cell_of_half(self, which: np.ndarray, axis: int) -> np.ndarray:
-        """The cell along an axis that a half of each comes into: the next one if any does, else its own."""
+        """The cell along an axis that a half of each particle enters: a neighbour cell, else its own."""
         dx, p, cells = self._grid.cell_size, self._particles, self._grid.cells[axis]
         x, offset = p.position[which, axis], p.box[which, axis] / 2
         own, low, high = (np.floor(at / dx).astype(np.int64) for at in (x, x - offset, x + offset))
@@ -140,7 +142,7 @@ class Refiner:
         p, side = self._particles, self._grid.cell_size / 2
         cut = which & (p.box[:, axis] > side)
         p.box[cut, axis] = side
-        if p.least_half_size is not None:  # the shape function sees the box, or that
+        if p.least_half_size is not None:  # the domain of the shape function has a lower limit
             p.half_size[cut, axis] = np.maximum(side, p.least_half_size[cut, axis])
 
     def merge(self, pairs: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""Volume ratios tend to values from the grid: only here do the positions of particles change J."""
+"""Relaxation of volume ratios J towards grid averages: only here do positions of particles change J."""
 
 from __future__ import annotations
 
@@ -15,30 +15,30 @@ from .particles import Group, Particles
 from .stateful import State, plain_state, restore_plain
 
 WORTH = 0.05
-"""Part of the departures of J that is due to go before any goes: so little may as well go at once, and to
-average costs a tenth of a step."""
+"""Relaxation waits until this part of the departures of J is due: an average costs a tenth of a step, and
+such small corrections can be made together."""
 CROWDED = 0.02
-"""Part by which a node may be too full before it counts: boxes do not quite tile what they fill."""
+"""Allowed excess of the crowding: boxes do not tile a body exactly."""
 MOST = 1.02
-"""Crowding that counts at most. A per cent or two has the pressure of the flow itself, ρ v² at a Mach number
-of 0.1; more, where boxes lie over each other for whatever reason, would throw them apart."""
+"""Upper limit of the crowding. One or two per cent correspond to the pressure of the flow itself, ρ v² at a
+Mach number of 0.1. Larger values, where boxes overlap for some reason, would throw particles apart."""
 
 
 class Relaxation:
     """J ← J + (1 - exp(-∫ rate dt)) (A J - J), with A the average over a material by initial volume.
 
-    The integral is over the time since the last one, which was when it had come to ``WORTH``. A is symmetric
-    in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any convex energy
-    Σ V0 e(J) does not grow. Each material is averaged by itself: at one pressure, two of them have two volume
-    ratios.
+    The integral is over the time since the last relaxation; it is applied when it reaches ``WORTH``. A is
+    symmetric in the initial volumes and its rows sum to one, so that Σ V0 J is kept, and for any convex
+    energy Σ V0 e(J) does not grow. Each material is averaged separately: at the same pressure, two materials
+    have different volume ratios.
 
-    Where a node has more material on it than room, J is drawn to the average over the crowding κ instead,
+    If a node has more material than its volume, J relaxes to the average divided by the crowding κ,
 
         κ = Σ V_p N_np / ((1 + CROWDED) V_n),   from 1 to MOST,
 
-    towards the volume there is: particles have come too close, whatever their rates say that they have done.
-    Of V_p counts what is within reach of the weights, so that boxes drawn out longer than a cell, between
-    which material is torn, crowd nothing; boxes that stay as they are tell nothing.
+    i.e. to the available volume: the particles are too close, even if their strain rates do not show it.
+    Only the part of V_p within reach of the weights counts, so that boxes longer than a cell, between
+    which the material is torn, do not add to the crowding. Boxes of constant size give no information.
 
     Attributes:
         due: the integral so far.
@@ -59,7 +59,7 @@ class Relaxation:
         restore_plain(self, state)
 
     def relax(self, averager: Averager, rate: float, dt: float) -> None:
-        """Go on by a step, at the rate, 1/s, that the treatment asks for.
+        """Advance by a step, at the rate, 1/s, of the volumetric treatment.
 
         Raises:
             PluginFault: the rate is not a number of at least 0.
@@ -80,7 +80,7 @@ class Relaxation:
 
 
 def find_crowding(averager: Averager, radial: bool) -> np.ndarray:
-    """κ of every node of the window, ``(nodes,)``, for boxes that follow the material."""
+    """κ of every node of the window, ``(nodes,)``, if boxes follow the material."""
     p, window = averager.particles, averager.window
     within = np.empty(len(p))
     domains.volume_within_reach(p.volume, p.half_size, window.grid.cell_size, within)

@@ -1,8 +1,8 @@
-"""Fluids that rest in a tank or a channel begin with the pressure of their weight.
+"""Fluids at rest in a tank or a channel start with hydrostatic pressure.
 
-Gravity that sets in at once makes a column bounce: its pressure swings between 0 and 2 ρ g (H - z) with the
-period 4 H/c, and a thin fluid damps that in no time that anyone waits for. What does not rest from wall to
-wall has no such pressure to begin with: of it is said how long it swings.
+If gravity starts suddenly, the pressure of a column oscillates between 0 and 2 ρ g (H - z) with the period
+4 H/c; a thin fluid damps this far too slowly. A fluid that does not reach from wall to wall cannot start with
+hydrostatic pressure; a message then says how long its pressure oscillates.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from .grid import Grid
 from .particles import Group, Particles
 
 CLOSE = 1e-6
-"""Cells by which a body may miss a wall or another body, by rounding."""
+"""Largest gap, in cells, between a body and a wall or another body that counts as rounding."""
 LEAST_RATIO = 0.5
-"""Volume ratio down to which an equation of state is asked for a pressure."""
+"""Least volume ratio for which the equation of state is evaluated."""
 HALVINGS = 50
 
 
 def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
     """Give particles at rest the volume ratio of hydrostatic pressure, p J = g Σ (mass above)/area.
 
-    Only where that is a state of rest: fluids in level layers that fill the domain from wall to wall, or
-    from seam to seam, on a closed face that gravity points to, and have no velocity. Positions stay as they
-    are, those of the liquid if it could not be compressed; J p, and not p, is what nodes are in balance with,
-    since forces are mapped with the volumes J V0.
+    This is done only if it is a state of rest: fluids without velocity in horizontal layers that fill the
+    domain from wall to wall, or over a whole period, on a closed face in the direction of gravity. Positions
+    are not changed; they are those of an incompressible liquid. J p, and not p, balances the weight at the
+    nodes, because forces are mapped with the volumes J V0.
 
     Returns:
         Whether the particles were changed.
@@ -55,7 +55,7 @@ def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
 
 
 def _vertical(case: Case, grid: Grid) -> int | None:
-    """The one axis along which gravity pushes on a closed face, all others being closed or without ends."""
+    """The axis along which gravity presses on a closed face, if all other axes are closed or periodic."""
     gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
     axes = np.flatnonzero(gravity)
     if len(axes) != 1:
@@ -67,7 +67,7 @@ def _vertical(case: Case, grid: Grid) -> int | None:
 
 
 def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np.ndarray | None:
-    """g Σ (mass above)/area at every particle, Pa; None where the bodies are not level layers."""
+    """g Σ (mass above)/area at every particle, Pa; None if the bodies are not horizontal layers."""
     p, across = particles, [a for a in range(grid.dim) if a != axis]
     pull = float(case.gravity_vector[axis])
     slack = CLOSE * grid.cell_size
@@ -84,7 +84,7 @@ def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np
             return None
         half = p.half_size[of_body, axis]
         bottom, top = (height[of_body] - half).min(), (height[of_body] + half).max()
-        # A body whose height is no whole number of rows is off by one of them at the most.
+        # If the height of a body is not a whole number of rows, the error is at most one row.
         filled = p.initial_volume[of_body].sum() / area
         if abs(filled - (top - bottom)) > 2 * half.max():
             return None
@@ -101,10 +101,11 @@ def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np
 
 
 def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
-    """What the pressure of a fluid does that stands on a floor and begins without it; None where none does.
+    """A warning about a fluid that stands on a floor and starts without pressure; None if there is none.
 
     The first mode of a column of height h has the wave number k = π/(2 h) and the period 4 h/c; viscosity
-    damps it at the rate 2/3 mu k²/rho. A solid is not meant: its sound speed is its own, and it does swing.
+    damps it at the rate 2/3 mu k²/rho. Solids are left out: their sound speed is physical, and they really
+    oscillate.
     """
     gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
     axis = int(np.argmax(np.abs(gravity)))
@@ -134,7 +135,7 @@ def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
 
 
 def _height_on_floor(grid: Grid, p: Particles, group: Group, axis: int, upwards: bool) -> float:
-    """Height, m, of the tallest body of a material that stands on a floor at rest; 0 if none does."""
+    """Height, m, of the tallest body of a material at rest on a floor; 0 if there is none."""
     tallest = 0.0
     body = p.body[group.part]
     for number in np.unique(body):
@@ -150,7 +151,7 @@ def _height_on_floor(grid: Grid, p: Particles, group: Group, axis: int, upwards:
 
 
 def _ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
-    """J at which p J is a weight, by bisection; None if the equation of state has none."""
+    """J at which p J equals a given weight, by bisection; None if there is no such J."""
     low, high = np.full(len(weight), LEAST_RATIO), np.ones(len(weight))
     if not (group.pressure(low) * low >= weight).all():
         return None

@@ -14,13 +14,14 @@ from .overlaps import refuse_overlaps_with_walls
 from .particles import Group, Particles
 
 LEAST_WIDTH = 1 / 8
-"""Width, in cells a dimension, below which a domain that follows the strain does not get, unless it began so.
+"""Least width, in cells per dimension, of a domain that follows the strain, unless it was smaller at the
+start.
 
-At the surface of the material, a node that a box of width w (in cells) only just reaches has the weight
-e²/2w and the gradient e/w, of which the acceleration takes the square over the weight, 2/w: where a box gets
-thin, such a node gets stiff, in a corner along d axes at once. USL, which takes its stress from that node, is
-left with √w of dx/c and w of the viscous limit along one axis; in a corner in two dimensions, at this width,
-with 0.42 of dx/c.
+At the surface of the material, a node that a box of width w (in cells) overlaps by a small length e has the
+weight e²/2w and the gradient e/w. The stiffness of the node is the squared gradient over the weight, 2/w: it
+grows when the box becomes thin, and in a corner along d axes at once. The critical step of USL, which takes
+the stress from that node, then falls to √w of dx/c and to w of the viscous limit along one axis; in a corner
+in two dimensions, at this width, to 0.42 of dx/c.
 """
 
 
@@ -105,7 +106,7 @@ def material_group(case: Case, material: Material, part: slice) -> Group:
 
 
 def _refuse_overlaps(case: Case) -> None:
-    """Refuse bodies that share room, by their shapes: what is less than a particle would be weighed twice."""
+    """Refuse bodies whose shapes overlap, even by less than a particle: this mass would count twice."""
     space, spacing = case.space_, [_spacing(case, body) for body in case.bodies]
     for number, body in enumerate(case.bodies):
         for other in range(number):

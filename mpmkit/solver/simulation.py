@@ -29,9 +29,9 @@ from .stateful import State, Stateful, plain_state, restore, restore_plain, stat
 from .time_step import Limits, choose_step, limits, warnings
 
 CONTROL_INTERVAL = 20
-"""Steps between two looks at the limits of the time step; in as many, no flow changes its speed much."""
+"""Steps between two checks of the time step; in so few steps, no flow changes its speed much."""
 IMPACT_INTERVAL = 5
-"""The same where there is a solid, which an impact stiffens within a dozen steps."""
+"""The same for scenes with a solid, because an impact can stiffen it within a dozen steps."""
 
 
 class Simulation:
@@ -46,8 +46,8 @@ class Simulation:
         """
         Args:
             case: a validated case.
-            particles: a state to go on from; default: the case's bodies in their places.
-            fraction: part of the critical step, also beyond the stable part of the schemes, to test them.
+            particles: the initial particles; default: the bodies of the case.
+            fraction: part of the critical step; may exceed the stable part of the schemes, for tests.
 
         Raises:
             MpmkitError: this process was forked from one that had used the threads.
@@ -58,7 +58,7 @@ class Simulation:
         self.time = 0.0
         self.steps = 0
         self.blaming = blaming_plugins(plugins_of(case), lambda: (self.steps, self.time))
-        """A block in which PluginStop, with the step and the time, tells which plug-in is at fault."""
+        """A block in which faults of plug-ins raise PluginStop with the plug-in, the step and the time."""
         with self.blaming:
             self._set_up(particles)
 
@@ -69,7 +69,7 @@ class Simulation:
         self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
         begins = particles is None and not self.starts_under_weight
         self.swinging = swinging(case, self.grid, self.particles) if begins else None
-        """What is said of a pressure that swings about that of the weight."""
+        """The warning about a pressure that oscillates about the hydrostatic pressure."""
         self.operations = SceneOperations(case, self.grid, self.particles)
         self.refiner = Refiner(case, self.grid, self.particles)
         self.measures = Measures.of(case, self.grid, self.particles)
@@ -77,10 +77,10 @@ class Simulation:
         self.time_step: float
         self.limited_by: str
         self.mach_number: float
-        """Largest speed over the slowest sound, a few steps ago at most."""
+        """Largest speed over the lowest sound speed, at most a few steps old."""
         self.particle_steps = 0
         self._prepared = 0
-        """The step, by the number of those done before it, for which ``prepare`` has looked last."""
+        """The number of steps done at the last check of ``prepare``."""
         self._first_sound_speeds = [group.sound_speed for group in self.particles.groups]
         fluid = all(group.law.uses_equation_of_state for group in self.particles.groups)
         self._interval = CONTROL_INTERVAL if fluid else IMPACT_INTERVAL
@@ -91,7 +91,7 @@ class Simulation:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own, in the order in which it is restored."""
+        """The components with a state, in the order in which they are restored."""
         return {
             "particles": self.particles,
             "operations": self.operations,
@@ -101,15 +101,15 @@ class Simulation:
         }
 
     def state(self) -> State:
-        """All that the run depends on, except the case: a run continues from it with the same bits."""
+        """The complete state, without the case: a run continues from it bit by bit the same."""
         limits_ = np.array(list(self.limits.as_dict().values()))
         return plain_state(self) | {"limits/": limits_} | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Take back a state of the same case.
+        """Restore a state of the same case.
 
         Raises:
-            KeyError: the state lacks something.
+            KeyError: an entry of the state is missing.
         """
         restore_plain(self, state)
         self.limits = Limits(*map(float, state["limits/"]))
@@ -134,7 +134,7 @@ class Simulation:
         self.guards.check_step()
 
     def remarks(self) -> list[str]:
-        """Sentences of the laws, and on what will change during the run."""
+        """Sentences of the laws, and about quantities that will change during the run."""
         with self.blaming:
             said = [sentence for group in self.particles.groups for sentence in group.remarks]
         if self.starts_under_weight:
@@ -160,12 +160,12 @@ class Simulation:
             return [*dict.fromkeys(of_materials), *warnings(self.case.scheme, self.limits, self.time_step)]
 
     def prepare(self) -> None:
-        """Every few steps, check the guards, refine, and choose the step; ``advance`` begins with it.
+        """Every few steps, check the guards, refine, and choose the step; ``advance`` calls it first.
 
         Call it first if you need the length of the next step; a second call in a step does nothing.
 
         Raises:
-            GuardStop: the run is beyond saving, see ``guards``.
+            GuardStop: the run has gone wrong, see ``guards``.
         """
         self._begin()
         if self.steps % self._interval == 0 and self.steps > self._prepared:
@@ -179,7 +179,7 @@ class Simulation:
         """One step, no longer than ``at_most`` seconds; returns its length.
 
         Raises:
-            GuardStop: the run is beyond saving, see ``guards``, or a plug-in is at fault.
+            GuardStop: the run has gone wrong, see ``guards``, or a plug-in is at fault.
         """
         with self.blaming:
             return self._advance(at_most)
@@ -204,19 +204,19 @@ class Simulation:
         return dt
 
     def _renew(self) -> None:
-        """Go on with other particles than before."""
+        """Prepare for the next step after particles were added or removed."""
         try:
             self.operations.renew(self.time)
         except Scattered as error:
             stop(self, error.particle, scattered=True)
 
     def _begin(self) -> None:
-        """Take what there is at the start, once."""
+        """Record the initial amounts, once."""
         self.ledger.begin(self.particles, self.time)
         self.guards.begin()
 
     def _follow_flow(self) -> None:
-        """Recompute the sound speeds that are to follow the flow."""
+        """Recompute the sound speeds that follow the flow."""
         gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
         follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
 
@@ -237,7 +237,7 @@ class Simulation:
                 self._renew()
 
     def measured(self) -> dict[str, float | np.ndarray]:
-        """What the history records of every scene, by the names of its variables, at the present step."""
+        """The scalars of the history at the present step, by the names of the variables."""
         found = self.measures(self.particles) | {
             "redistribution_energy": self.redistribution_energy,
             "time_step": self.time_step,
@@ -258,7 +258,7 @@ class Simulation:
         return self.ledger.account(self.particles, self.time, by_cause)
 
     def _impulse_of_walls(self, dim: int) -> np.ndarray:
-        """N s that all walls, faces and planes of symmetry have given so far, ``(dim,)``."""
+        """Impulse of all walls, faces and planes of symmetry so far, N s, ``(dim,)``."""
         impulse = self.operations.faces.sums[:, :dim].sum(axis=0)
         if len(self.operations.walls):
             impulse += self.operations.walls.sums()[:, :dim].sum(axis=0)
@@ -266,7 +266,7 @@ class Simulation:
 
     @property
     def mapped_mass(self) -> float | None:
-        """Mass that the nodes got in the last step, kg; None where there was no step yet."""
+        """Mass mapped to the nodes in the last step, kg; None before the first step."""
         return self.operations.mapped_mass
 
     @property
@@ -275,30 +275,30 @@ class Simulation:
         return *self.case.walls, *self.operations.faces.names
 
     def wall_sums(self) -> np.ndarray:
-        """What each wall has given to the material so far, ``(walls, …)``: impulse, its moment, work."""
+        """Impulse, moment of impulse, and work of each wall on the material so far, ``(walls, …)``."""
         return np.array([*self.operations.walls.sums(), *self.operations.faces.of_walls()])
 
     @property
     def walls_work(self) -> float:
-        """Energy that walls that move have given to the material so far, J."""
+        """Work of moving walls on the material so far, J."""
         return self.operations.walls.work
 
     @property
     def redistribution_energy(self) -> float:
-        """Energy that redistributions have put in so far, J; see ``redistribution.Stage``."""
+        """Energy added by redistributions so far, J; see ``redistribution.Stage``."""
         return self.operations.stage.energy
 
     def require_tables(self) -> None:
-        """Raise PluginFault if the weights of the last step, if there was one, cannot be right."""
+        """Raise PluginFault if the weights of the last step, if any, are wrong."""
         if self.mapped_mass is not None:
             self.operations.require_tables()
 
     def sum_of_weights(self) -> np.ndarray:
-        """Σ N of every particle, ``(n,)``, of the last step: 1 but for rounding."""
+        """Σ N of every particle, ``(n,)``, of the last step; 1 up to rounding."""
         return np.prod(self.operations.weight.sum(axis=-1), axis=1)
 
     def check(self) -> None:
-        """Raise GuardStop if the run is beyond saving, see ``guards``."""
+        """Raise GuardStop if the run has gone wrong, see ``guards``."""
         with self.blaming:
             self._begin()
             self.ledger.look(self.particles, self.time)

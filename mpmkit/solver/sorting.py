@@ -1,7 +1,7 @@
-"""The order in which particles are stored: group by group, and in each as ``kernels.sort`` has it.
+"""The order in which particles are stored: group by group, and within a group by ``kernels.sort``.
 
-Blocks of cells are what P2G runs over in parallel. They stay valid while no particle drifts more than one
-cell out of its own, so that sorting is rare and costs nothing in between.
+P2G runs over blocks of cells in parallel. The blocks stay valid until a particle moves more than one cell out
+of its own cell, so that sorting is rare.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from .stateful import State, plain_state, restore_plain
 from .tasks import TASKS, cuts
 
 DRIFT = 1
-"""Cells that a particle may drift out of the box of the last sort."""
+"""Cells that a particle may move out of its box of the last sort."""
 
 
 class Scattered(Exception):
-    """The material has spread over more nodes than fit into memory.
+    """The material has spread over more nodes than the memory can hold.
 
     Attributes:
-        particle: index of the one farthest out.
+        particle: index of the outermost particle.
     """
 
     def __init__(self, particle: int) -> None:
@@ -38,7 +38,7 @@ class Scattered(Exception):
 
 
 class Sorting:
-    """Keeps the particles sorted, the window over them, and what of it they can reach."""
+    """Keeps the particles sorted, the window over them, and the nodes that they can reach."""
 
     def __init__(self, grid: Grid, particles: Particles, window: Window) -> None:
         self.grid = grid
@@ -58,7 +58,8 @@ class Sorting:
         self._walled = [a for a in range(grid.dim) if grid.walls[a].any()]
 
     def refresh(self, cells: np.ndarray, scratch: np.ndarray) -> int | None:
-        """Sort and move the window if a particle has strayed. Returns a particle that is lost, if any is.
+        """Sort and move the window if a particle has left its range. Return the index of a particle outside
+        the grid, if any.
 
         Args:
             cells: ``(n, dim)`` integers of 32 bits, for the particles' cells in a sort.
@@ -115,11 +116,11 @@ class Sorting:
         return None
 
     def state(self) -> State:
-        """What the order of the particles, and when it changes, depends on."""
+        """The data that determine the order of the particles and the next sort."""
         return plain_state(self)
 
     def restore(self, state: State) -> None:
-        """Take back a state, for particles that are in its order and a window that lies over them."""
+        """Restore a state; the particles and the window must be restored before."""
         restore_plain(self, state)
         if self.sorts:
             self.active = self._active_nodes()
@@ -132,14 +133,14 @@ class Sorting:
             self.tasks[:, colour] = self._block_first[:, begin + cuts(load[begin : end + 1])]
 
     def _active_nodes(self) -> ActiveNodes:
-        """The nodes that particles can touch for as long as none has strayed: see ``kernels.locate``."""
+        """The nodes that particles can touch until the next sort: see ``kernels.locate``."""
         occupied = (np.diff(self._block_first, axis=1) > 0).any(axis=0)
         cell = self._block_cell[occupied]
         low, high = cell - DRIFT, cell + sort.BLOCK_WIDTH - 1 + DRIFT
         return ActiveNodes(self.window, np.maximum(low, self._low), np.minimum(high, self._high))
 
     def _require_memory(self, cell: np.ndarray) -> None:
-        """Refuse a window that does not fit: a particle thrown out could make it as large as the domain."""
+        """Refuse a window that needs too much memory: one ejected particle can make it very large."""
         missing = self.window.missing(self._low, self._high)
         if missing and missing * NODE * 8 > available_memory():
             away = np.abs(cell - np.median(cell, axis=0)).max(axis=1)

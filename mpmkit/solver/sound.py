@@ -1,4 +1,4 @@
-"""The sound speed against the flow: how fast it flows, and how fast it could come to flow."""
+"""A sound speed that follows the flow: its present speed, and the speed that it can reach."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from .grid import Grid
 from .particles import Group, Particles
 
 SLOWEST = 0.1
-"""Part of its first value below which a sound speed that follows the flow does not get, as in a scene without
-gravity that comes to rest."""
+"""Least sound speed relative to its initial value, as for a scene without gravity that comes to rest."""
 CHANGE = 0.05
 """Largest change of ln c in the time in which sound crosses the material; a slump at Mach 0.1 needs half of
-it. J changes with c while the particles stay where they are: slowly, so that they can move there."""
+it. J changes with c at once, and the change must be slow enough for the particles to follow."""
 ITERATIONS = 20
 """Steps of Newton's method, of which two or three suffice."""
 ROUNDING = 1e-14
@@ -23,9 +22,9 @@ ROUNDING = 1e-14
 def follow_flow(
     particles: Particles, grid: Grid, gravity: np.ndarray, first: list[float | None], elapsed: float
 ) -> None:
-    """Draw c of every material that is to follow the flow towards √(2 e) / mach.
+    """Move c of every material that follows the flow towards √(2 e) / mach.
 
-    c changes slowly against the sound, and at unchanged energy, see ``_change_sound``.
+    c changes slowly compared with sound waves, and at constant energy, see ``_change_sound``.
 
     Args:
         particles: their sound speeds, volume ratios and pressures are changed.
@@ -48,12 +47,12 @@ def follow_flow(
 
 
 def _change_sound(p: Particles, group: Group, speed: float) -> None:
-    """Give a material another c, and each of its particles the J at which it stores as much energy as before.
+    """Change c of a material, and set J of each particle so that its stored energy stays the same.
 
-    A change at the same J would multiply the stored energy by the square of the change, one at the same
-    pressure by its inverse: a wave that finds c high in compression and low at rest would gain in every
-    swing. At the same energy the pressure changes as c does. J is found on its own side of 1 by Newton's
-    method on √e, which is all but linear in J.
+    A change at constant J would multiply the stored energy by the squared ratio of c, a change at constant
+    pressure by its inverse: a wave with high c in compression and low c at rest would gain energy in every
+    period. At constant energy, the pressure is proportional to c. J stays on its side of 1 and is found by
+    Newton's method on √e, which is almost linear in J.
     """
     part, ratio = group.part, p.volume_ratio[group.part]
     wanted = np.sqrt(group.compressive_energy(ratio))
@@ -73,11 +72,11 @@ def _change_sound(p: Particles, group: Group, speed: float) -> None:
 
 
 def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> float:
-    """Largest energy of a particle, J/kg: of its speed, of what it has stored, and of the height of its box
-    above the lowest one.
+    """Largest energy of a particle, J/kg: kinetic, stored, and potential (height of its box above the lowest
+    box).
 
-    What is stored counts as it may move again: an impact on a wall leaves the energy as it is. Along a
-    periodic axis the work of gravity has no potential.
+    Stored energy is included because it can become motion again: an impact on a wall conserves the sum. Along
+    a periodic axis the work of gravity has no potential.
     """
     downwards = np.where(grid.periodic, 0.0, gravity)
     potential, of_box = -particles.position @ downwards, particles.box @ np.abs(downwards)
@@ -92,6 +91,6 @@ def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> flo
 
 
 def mach_number(particles: Particles, largest_speed: float) -> float:
-    """Largest speed over the slowest sound; zero where no material has an equation of state."""
+    """Largest speed over the lowest sound speed; 0 if no material has an equation of state."""
     speeds = [group.sound_speed for group in particles.groups if group.law.uses_equation_of_state]
     return max((largest_speed / speed for speed in speeds if speed is not None), default=0.0)

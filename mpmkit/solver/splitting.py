@@ -1,4 +1,4 @@
-"""One particle made two, where its box has been drawn out."""
+"""Splitting of a particle with a long box into two."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .particles import Particles
 
 
 class OutOfMemory(Exception):
-    """There is no room for the particles that splitting would add: a sign of a run that diverges.
+    """Not enough memory for the particles that splitting would add; the run probably diverges.
 
     Attributes:
         particle: index of the one with the longest box.
@@ -24,9 +24,9 @@ class OutOfMemory(Exception):
 def halve(p: Particles, grid: Grid, which: np.ndarray, axis: int, ring: bool) -> None:
     """Cut the boxes of particles ``which``, ``(n,)`` True or False, in half along an axis.
 
-    The halves share mass, volume and momentum as their volumes do (in an axisymmetric scene the outer
-    half is the larger ring); stress, deformation and the law's state are the parent's, and so is the affine
-    velocity field, v + C (x - x̄).
+    Mass, volume and momentum are divided in proportion to the volumes of the halves (in an axisymmetric
+    scene the outer half is the larger ring). Both halves keep the stress, the deformation, the state of the
+    law and the affine velocity field v + C (x - x̄) of the parent.
 
     Args:
         p: changed in place. The inner half keeps the parent's number.
@@ -36,10 +36,10 @@ def halve(p: Particles, grid: Grid, which: np.ndarray, axis: int, ring: bool) ->
         ring: whether that is the radius of an axisymmetric scene.
 
     Raises:
-        OutOfMemory: there is no room for the halves.
+        OutOfMemory: there is not enough memory for the halves.
     """
     _require_memory(p, which)
-    # A box does not reach beyond a face, nor across the axis; a periodic axis has no end.
+    # A box ends at a face and at the axis of symmetry; a periodic axis has no end.
     x = p.position[which, axis]
     room = np.full(len(x), np.inf) if grid.periodic[axis] else np.minimum(x, grid.extent[axis] - x)
     twice = np.repeat(np.arange(len(p)), 1 + which)
@@ -59,13 +59,13 @@ def halve(p: Particles, grid: Grid, which: np.ndarray, axis: int, ring: bool) ->
                 size[half, axis] /= 2
         p.portion[half] /= 2
         p.position[half, axis] += shift
-        if p.affine.shape[1]:  # about the centroid of the two, so that they have the parent's momentum
+        if p.affine.shape[1]:  # about the common centroid, to keep the parent's momentum
             from_centroid = shift - (1 - 2 * share) * offset
             p.velocity[half] += p.affine[half, :, axis] * from_centroid[:, None]
     p.number[outer] = p.new_numbers(len(outer))
 
 
 def _require_memory(p: Particles, which: np.ndarray) -> None:
-    """Refuse to add particles that do not fit, copies while they are made, or saved, included."""
+    """Refuse to add particles if memory is too small, including temporary copies and checkpoints."""
     if 3 * p.nbytes / len(p) * (len(p) + which.sum()) > available_memory():
         raise OutOfMemory(int(np.argmax(p.box.max(axis=1))))

@@ -9,7 +9,7 @@ from .particles import Particles
 
 
 def state_fields(p: Particles) -> dict[str, np.ndarray]:
-    """State variables of all laws, ``(n,)`` or ``(n, k)``; not a number where the law is another."""
+    """State variables of all laws, ``(n,)`` or ``(n, k)``; NaN for particles of other laws."""
     found: dict[str, np.ndarray] = {}
     for group in p.groups:
         for name, array in group.state.items():

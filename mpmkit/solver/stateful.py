@@ -1,7 +1,7 @@
-"""The one way to have state: a component gives its state as arrays, and takes it back.
+"""The common interface of components with state: they give their state as arrays and restore it.
 
-Each class knows its own state. What is made of components goes through them by name, in one loop. So a new
-component, or a new number in an old one, is in the next checkpoint, and there is no list to keep up to date.
+Each class knows its own state. A composite saves its components by name in one loop. So a new component, or a
+new number in an old one, is in the next checkpoint automatically; there is no list to keep up to date.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ import numpy as np
 State = dict[str, np.ndarray]
 """Arrays by name; a number or a text is an array without axes."""
 PLAIN = bool | int | float | str | np.generic | np.ndarray
-"""What an attribute may be to be written as an array."""
+"""Types of attributes that can be written as an array."""
 NOTHING = np.zeros(0, dtype=bool)
-"""How ``None`` is written as an array."""
+"""Text that represents ``None`` in an array."""
 
 
 @runtime_checkable
 class Stateful(Protocol):
-    """What changes during a run, and has to be known for the run to go on."""
+    """An object with data that change during a run and are needed to continue it."""
 
     def state(self) -> State:
         """The present state; its arrays may be views."""
 
     def restore(self, state: State) -> None:
-        """Take a state back, in an object that was made of the same case; the arrays are copied.
+        """Restore a state, in an object made from the same case; the arrays are copied.
 
         Raises:
-            KeyError: the state lacks something.
+            KeyError: an entry of the state is missing.
         """
 
 
 def state_of(components: Mapping[str, Stateful]) -> State:
-    """The states of several components in one, each entry as ``component/name``."""
+    """The states of several components in one dict, with keys ``component/name``."""
     return {
         f"{name}/{key}": value
         for name, component in components.items()
@@ -62,7 +62,7 @@ def plain_state(owner: Any, but: tuple[str, ...] = ()) -> State:
 
 
 def restore_plain(owner: Any, state: State) -> None:
-    """Set the attributes that ``plain_state`` gave; what a component adds to them has a ``/`` in its name."""
+    """Set the attributes from ``plain_state``; entries of components have a ``/`` in their names."""
     for name, value in state.items():
         if "/" in name:
             continue
@@ -72,7 +72,7 @@ def restore_plain(owner: Any, state: State) -> None:
 
 
 def value_of(array: np.ndarray) -> Any:
-    """The attribute that an array of ``plain_state`` stands for."""
+    """The value of the attribute for an array of ``plain_state``."""
     if array.dtype == bool and array.shape == (0,):
         return None
     return array.item() if array.ndim == 0 else array.copy()

@@ -1,4 +1,4 @@
-"""Stresses of the particles, of which the extra stress and the pressure are kept apart."""
+"""Stresses of the particles; the extra stress and the pressure are stored separately."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def cauchy_stress(p: Particles) -> np.ndarray:
 
 
 def mean_pressure(p: Particles) -> np.ndarray:
-    """Minus the mean normal stress, Pa, ``(n,)``; a solid has it too, though no equation of state."""
+    """Minus the mean normal stress, Pa, ``(n,)``; also for solids, which have no equation of state."""
     return p.mapped_pressure - p.stress[:, :3].sum(axis=1) / 3
 
 

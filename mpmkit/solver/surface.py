@@ -1,4 +1,4 @@
-"""Where the surface of the material is, by the crowding of the nodes."""
+"""Position of the free surface, from the crowding of the nodes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ..kernels.splines import below_surface
 from .crowding import Crowding
 
 SOLID = 0.9
-"""Crowding of the fullest node of a column from which the column has a surface that its nodes can tell."""
+"""A column of nodes gives a surface only if its largest crowding is at least this."""
 STEPS = np.linspace(-1.5, 1.5, 601)
 
 
 def mean_top(found: Crowding, centre: np.ndarray, radial: bool) -> float:
-    """Mean height of the surface over what is within a cell of a vertical line, m above the lower face.
+    """Mean height of the surface within a cell of a vertical line, m above the lower face.
 
     The crowding of a node that is d cells below a flat surface is ∫ N from -∞ to d, with its B-spline N. Of
-    the two nodes between which the crowding falls through 1/2, the one that is nearer to 1/2 gives d. A
-    single particle that lies on the others hardly counts, and gaps between boxes are no dents.
+    the two nodes between which the crowding falls below 1/2, the one closer to 1/2 gives d. A single
+    particle on top of the others has little influence, and gaps between boxes do not lower the surface.
 
     Args:
         found: of the scene.
@@ -27,7 +27,7 @@ def mean_top(found: Crowding, centre: np.ndarray, radial: bool) -> float:
         radial: whether the line is the axis of an axisymmetric scene, where nodes count with their rings.
 
     Returns:
-        NaN where the material is thinner than a cell, or narrower: then its nodes do not tell.
+        NaN if the material is thinner or narrower than a cell.
     """
     block = found.block
     dx, flat = block.spacing, len(centre)

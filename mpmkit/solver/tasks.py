@@ -1,11 +1,11 @@
-"""Work cut into pieces, so that every thread has its share of it whatever their number."""
+"""Division of work into pieces for any number of threads."""
 
 from __future__ import annotations
 
 import numpy as np
 
 TASKS = 64
-"""Pieces that a loop over blocks or rows of unequal load is cut into."""
+"""Number of pieces of a loop over blocks or rows with unequal load."""
 
 
 def cuts(load: np.ndarray) -> np.ndarray:

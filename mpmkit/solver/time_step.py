@@ -1,4 +1,4 @@
-"""The limits of an explicit step, each by its name, and the step that is taken."""
+"""The limits of an explicit time step by name, and the step that is used."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ VISCOUS_NUMBER = 0.375
 """Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
 
 FROM_REST = 0.05
-"""Part of the scene's own rate that its flow comes to from rest until the next look at the limits."""
+"""Part of the scene's rate √e/h that a flow from rest can reach before the next check of the limits."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Critical steps, s, by name; infinite where nothing limits."""
+    """Critical steps, s, by name; infinite if there is no limit."""
 
     acoustic: float
     viscous: float
@@ -46,8 +46,8 @@ def limits(
         largest_speed: largest particle speed, m/s.
         rate: √e/h of the scene, 1/s, see ``contracts.scale``.
     """
-    # No strain rate that the grid can resolve exceeds a jump of the largest speed over one cell; a scene
-    # at rest will move, so that a part of the rate at which it could fall is allowed for.
+    # The largest strain rate on the grid is the largest speed over one cell. A scene at rest will move, so
+    # that a part of the rate of its possible fall is added.
     largest_rate = max(2 * largest_speed / cell_size, FROM_REST * rate)
     acoustic = viscous = math.inf
     for group, wave_speed in materials:
@@ -66,7 +66,7 @@ def borne_by(scheme: Scheme) -> dict[str, float]:
     """Part of each limit, by name, at which the schemes are still stable.
 
     Raises:
-        PluginFault: one of them says what is no part of anything.
+        PluginFault: a plug-in returned a part that is not positive and finite.
     """
     order, velocity = scheme.order, scheme.velocity
     return {
@@ -86,8 +86,8 @@ def _fraction(plugin: UpdateOrder | VelocityUpdate, name: str) -> float:
 def choose_step(scheme: Scheme, found: Limits, fraction: float | None = None) -> tuple[float, str]:
     """The step, s, and the name of the limit that sets it.
 
-    It is ``time_step.fraction`` of the smallest limit that is not ignored, and no more of any than the
-    schemes bear; with a ``fraction`` of its own it is that part, whatever they bear.
+    It is ``time_step.fraction`` of the smallest limit that is not ignored, but never more than the stable
+    part of the schemes. With an explicit ``fraction``, it is that part, also if it is not stable.
     """
     settings, borne = scheme.time_step, borne_by(scheme)
     steps = {

@@ -1,10 +1,10 @@
-"""Where material touches the walls: a wall acts at a node only in steps in which material has reached it.
+"""Contact between material and walls: a wall acts at a node only in steps in which material touches it.
 
-A particle has weight on the nodes of a wall when it is still up to a cell away. A wall that stopped it there
-would do so in the air, and the cell in front of it would stay half empty: through so few particles what
-sticks to the wall is held by half of the stress only. So a node is free until the box of a particle with
-weight on it comes within ``kernels.touch.REACH`` of the wall, or until the node is full: where particles
-lie in disorder, single boxes stand off further though there is no room left.
+A particle has weight on the nodes of a wall when it is still up to a cell away. If the wall stopped it there,
+the cell in front of the wall would stay half empty, and material that sticks to the wall would get only half
+of the stress. So a node is free until the box of a particle with weight on it comes within
+``kernels.touch.REACH`` of the wall, or until the node is full: in disorder, single boxes can stay farther
+away although there is no space left.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from .particles import Particles
 from .sorting import Sorting
 
 RINGS = 8
-"""Boxes, two a cell, from an axis to where no shape function reaches a node on it."""
+"""Number of boxes, two per cell, from an axis to the reach of the shape functions of its nodes."""
 
 
 class Touch:
-    """Marks the nodes of the walls that are touched, anew in every step, and so has no state of its own."""
+    """Marks the touched nodes of the walls in every step again; so it has no state."""
 
     def __init__(self, grid: Grid, particles: Particles, radial: bool, shape: ShapeFunction) -> None:
         self._particles, self._radial = particles, radial
@@ -55,7 +55,7 @@ class Touch:
 
 
 def _room_on_axis(shape: ShapeFunction) -> float:
-    """Room of a node on the axis, in Δx² turns: what boxes that tile it have there, 1/6 for cpGIMP."""
+    """Volume of a node on the axis, in Δx² turns: that of boxes that tile it, 1/6 for cpGIMP."""
     # Columns of two axes, as in a scene, for which the kernels of the shape function are compiled.
     position, half_size = np.empty((RINGS, 2)), np.full((RINGS, 2), 0.25)
     position[:] = (np.arange(RINGS)[:, None] + 0.5) / 2

@@ -1,4 +1,4 @@
-"""What those that only look at a scene see of it."""
+"""Read-only view of a scene."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .time_step import Limits
 
 
 class SceneView(Protocol):
-    """A scene as guards see it: to be read, not to be changed. ``Simulation`` is one."""
+    """Read-only view of a scene for guards. ``Simulation`` implements it."""
 
     @property
     def case(self) -> Case: ...
@@ -46,7 +46,7 @@ class SceneView(Protocol):
 
     @property
     def mapped_mass(self) -> float | None:
-        """Mass that the nodes got in the last step, kg; None where there was no step yet."""
+        """Mass mapped to the nodes in the last step, kg; None before the first step."""
 
     @property
     def ledger(self) -> Ledger: ...
@@ -55,7 +55,7 @@ class SceneView(Protocol):
         """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
 
     def require_tables(self) -> None:
-        """Raise PluginFault if the weights of the last step cannot be right."""
+        """Raise PluginFault if the weights of the last step are wrong."""
 
     def sum_of_weights(self) -> np.ndarray:
         """Σ N of every particle, ``(n,)``, of the last step."""

@@ -1,4 +1,4 @@
-"""Studies: variations of a case, run side by side, and what came of them in one dataset."""
+"""Studies: variations of a case, run in parallel, with all results in one dataset."""
 
 from .collect import collect
 from .execute import execute

@@ -1,4 +1,4 @@
-"""Error against cost: which member gives most for its time."""
+"""Error against cost: which member is the most accurate for its time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .figures import members
 from .quantities import COSTS
 
 FINEST = "finest"
-"""The member with the most particle-steps of those that finished, as the reference of the others."""
+"""Name of the default reference: the finished member with the most particle-steps."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Chart:
-    """All points, and what their error is against."""
+    """All points, and the reference of their errors."""
 
     variable: str
     cost: str
@@ -38,7 +38,7 @@ class Chart:
 
     @property
     def front(self) -> list[Point]:
-        """Pareto's front, cheapest first: nobody else is both cheaper and closer."""
+        """The Pareto front, cheapest first: no other member is both cheaper and more accurate."""
         front: list[Point] = []
         for point in sorted(self.points, key=lambda point: (point.cost, point.error)):
             if not front or point.error < front[-1].error:
@@ -51,9 +51,9 @@ def chart(
 ) -> Chart:
     """Errors and costs of the members that finished.
 
-    The error of a history is its largest departure from the reference's, over the times that both have, as a
-    part of the reference's largest value; against a number it is that of the last value. That of a figure,
-    such as ``t500``, is relative to the reference.
+    The error of a history is its largest difference from the reference over the common times, relative to the
+    largest value of the reference. If the reference is a number, it is the error of the last value. The error
+    of a result such as ``t500`` is relative to the reference.
 
     Args:
         dataset: of ``collect``.
@@ -82,7 +82,7 @@ def chart(
     elif (value := _number(reference)) is not None:
         if not math.isfinite(value) or value == 0:
             raise CaseError(
-                f"--reference {reference}: it must be finite and not 0, since errors are relative to it"
+                f"--reference {reference}: it must be finite and not 0, because errors are relative to it"
             )
         exact, against = xarray.DataArray(value), f"{value:g}"
     else:
@@ -99,11 +99,11 @@ def chart(
 
 
 def _error(found: xarray.DataArray, exact: xarray.DataArray) -> float:
-    """Relative error; not a number where the two cannot be compared."""
+    """Relative error; NaN if the two cannot be compared."""
     if "time" not in found.dims and "time" in exact.dims:
-        raise CaseError(f"--reference: '{found.name}' is one number a member, and so must its reference be")
+        raise CaseError(f"--reference: '{found.name}' is one number per member; it must be a number too")
     if "time" not in exact.dims:
-        known = found.values[np.isfinite(found.values)]  # of a history, the last value is what counts
+        known = found.values[np.isfinite(found.values)]  # for a history, use the last value
         values, at = (known[-1:], exact.values)
     else:
         at = np.interp(found.time, exact.time, exact.values, left=math.nan, right=math.nan)

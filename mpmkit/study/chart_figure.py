@@ -1,4 +1,4 @@
-"""Figure: error against cost, both on logarithmic axes, with Pareto's front."""
+"""Figure: error against cost on logarithmic axes, with the Pareto front."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .chart import Chart
 from .quantities import COSTS
 
 MANY_DECADES, FEW_DECADES = 1e3, 10.0
-"""Largest over least value of an axis, above which ticks stand at powers of ten, or at 1, 2 and 5 of each."""
+"""If the ratio of the ends of an axis is larger, its ticks are powers of ten, or 1, 2 and 5 times these."""
 LEAST_ERROR = 1e-6
-"""Errors below it are drawn there: what is exact has no place on a logarithmic axis."""
+"""Smaller errors are drawn at this value: a logarithmic axis has no place for 0."""
 
 
 def draw(chart: Chart, title: str, path: Path) -> None:
@@ -70,7 +70,7 @@ def draw(chart: Chart, title: str, path: Path) -> None:
 
 
 def _number_ticks(axes: Axes) -> None:
-    """Numbers at the ticks that are all different: powers of ten over decades, and more of them over less."""
+    """Tick labels that all differ: powers of ten over several decades, more ticks over a shorter range."""
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         if high > MANY_DECADES * low:
             axis.set_major_locator(LogLocator())

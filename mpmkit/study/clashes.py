@@ -1,4 +1,4 @@
-"""Changes of one and the same place of a case: the later one would undo the earlier one without a word."""
+"""Two changes of the same place of a case: the later one would silently replace the earlier one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def place(path: str) -> Place:
 
 
 def within(inner: str, outer: str) -> bool:
-    """Whether a path leads to the place of another one, or to a place in it."""
+    """Whether a path leads to the place of another path, or to a part of that place."""
     return place(inner)[: len(place(outer))] == place(outer)
 
 

@@ -11,17 +11,17 @@ from ..errors import CaseError
 from .execute import Unfinished
 
 PATIENCE = 5
-"""Seconds to wait for the scheduler, which is there already or is not."""
+"""Seconds to wait for the scheduler, which must already run."""
 RETRIES = 3
-"""Times that a member is given out again when a worker cannot even begin with it."""
+"""How often a member is sent again if a worker cannot start it."""
 
 
 @contextmanager
 def cluster(address: str) -> Iterator[Executor]:
     """An executor on the workers of a scheduler; they need mpmkit, and the same plug-ins.
 
-    A worker that dies takes nothing with it: the scheduler gives its member to another, as often as its
-    setting ``distributed.scheduler.allowed-failures`` says.
+    If a worker dies, no result is lost: the scheduler gives its member to another worker, up to
+    ``distributed.scheduler.allowed-failures`` times.
 
     Raises:
         CaseError: distributed is not installed, or there is no scheduler at the address.
@@ -36,11 +36,11 @@ def cluster(address: str) -> Iterator[Executor]:
 
     class Connection(Client):
         def __del__(self) -> None:
-            """Wait for nothing: one that is interrupted while it connects cannot be closed; others are."""
+            """Close the client without waiting. A client interrupted while connecting cannot be closed."""
 
     with _silent("distributed", "distributed.client"):
         try:
-            # No default, or xarray would ask it for arrays, even one that never found its scheduler.
+            # Not the default client: xarray would otherwise use it for arrays, even without a scheduler.
             client = Connection(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise CaseError(f"--scheduler {address}: no scheduler answers there: {error}") from None
@@ -54,7 +54,7 @@ def cluster(address: str) -> Iterator[Executor]:
 
 @contextmanager
 def _silent(*names: str) -> Iterator[None]:
-    """Keep the tracebacks of loggers off the screen: what has to be said is said in a sentence."""
+    """Keep tracebacks of loggers off the screen: mpmkit reports the problem in one sentence."""
     loggers = {logging.getLogger(name): logging.getLogger(name).level for name in names}
     try:
         for logger in loggers:

@@ -1,4 +1,4 @@
-"""Everything that a study gave, in one dataset."""
+"""All results of a study in one dataset."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ ROWS = 201
 
 
 def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset:
-    """One dataset of all members: a dimension for each one varied, and time.
+    """One dataset of all members: a dimension for each varied quantity, and time.
 
-    Histories are taken at common times, linearly between rows; after a member's end they are not a number.
-    What a member has not run, or does not have, is not a number, and its ``fate`` is empty.
+    Histories are interpolated linearly to common times; after a member's end they are NaN. Results that a
+    member does not have are NaN; the ``fate`` of a member that has not run is empty.
     """
     axes = dimensions(study)
     shape = tuple(len(labels) for labels in axes.values())
@@ -41,7 +41,7 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
     fields["sentence"] = (
         names,
         np.full(shape, "", dtype=object),
-        {"long_name": "what there is to say of it"},
+        {"long_name": "remark or error message"},
     )
     for place, member in zip(np.ndindex(shape), members, strict=True):
         record = store.outcome(member)
@@ -71,7 +71,7 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
 
 
 def _end(member: Member, store: Store) -> float:
-    """The time, s, to which a member has come where conditions may end it; else that of its case."""
+    """The end time, s, of a member: the time reached if conditions may end it, else that of its case."""
     record = store.outcome(member) if conditions(member.case.until) else None
     return member.case.end if record is None else record["summary"].get("simulated_time") or member.case.end
 

@@ -13,13 +13,13 @@ from .store import Store
 from .work import FAILED, Outcome, run_member
 
 MOST_NAMED = 5
-"""Members that a sentence names."""
+"""Most members that a sentence names."""
 LOST = 3
-"""Times that workers may die around a member before it is given up."""
+"""How often the worker of a member may die before the member counts as failed."""
 
 
 class Unfinished(MpmkitError):
-    """Members of a study have no result: the exit status is 1, and the same study goes on from there."""
+    """Some members have no result: the exit status is 1, and the study can be continued."""
 
 
 Listener = Callable[[Member, Outcome], None]
@@ -34,20 +34,20 @@ def execute(
     workers: int | None = None,
     listen: Listener | None = None,
 ) -> None:
-    """Run all members that have not come to an end yet; one that fails does not stop the others.
+    """Run all members without a result; a member that fails does not stop the others.
 
     Args:
         members: of the study.
-        store: keeps what each gave, as soon as it is there.
+        store: saves the result of each member as soon as it is available.
         threads: of each member.
         executor: runs them; default: processes of this machine.
         workers: how many at once on this machine; default: as many as its cores hold of ``threads``.
         listen: called for each member that has ended.
 
     Raises:
-        KeyboardInterrupt: what has finished is kept.
-        Unfinished: the executor gave members up, as one does whose scheduler has died; what has finished is
-            kept.
+        KeyboardInterrupt: results of finished members are kept.
+        Unfinished: the executor gave up members, for example because its scheduler has died; finished
+        members are kept.
         OutputError: the store cannot be written.
     """
     left = {number: member for number, member in enumerate(members) if not store.settled(member)}
@@ -60,7 +60,7 @@ def execute(
             listen(left[number], outcome)
 
     while lost:
-        # Whose fault it was when a pool broke nobody says: the second time each member gets its own.
+        # A broken pool does not say which member broke it: the second time, each member gets its own process.
         pool: AbstractContextManager[Executor] = (
             processes(min(workers or max(1, cores() // threads), len(lost)), any(lost.values()))
             if executor is None
@@ -71,7 +71,7 @@ def execute(
         if given_up:
             titles = [left[number].title for number in sorted(given_up)]
             raise Unfinished(
-                f"the executor gave up {named(titles, len(members))}; the same study goes on from there"
+                f"the executor gave up {named(titles, len(members))}; run the same study again to continue"
             )
         for number in broken:
             lost[number] += 1
@@ -80,7 +80,7 @@ def execute(
 
 
 def named(titles: list[str], total: int) -> str:
-    """How many members there are of all, and which; no more than a few of them by name."""
+    """How many of all members, with the names of the first few."""
     few = ", ".join(titles[:MOST_NAMED]) + (", …" if len(titles) > MOST_NAMED else "")
     return f"{len(titles)} of {total} members ({few})"
 
@@ -88,14 +88,14 @@ def named(titles: list[str], total: int) -> str:
 def _run(
     pool: Executor, members: dict[int, Member], threads: int, done: Callable[[int, Outcome], None]
 ) -> tuple[list[int], list[int]]:
-    """Run members in a pool; returns those whose workers died, and those that the pool gave up."""
+    """Run members in a pool; return members whose workers died, and members that the pool gave up."""
     futures: dict[Future, int] = {}
     broken, given_up = [], []
     try:
         for number, member in members.items():
             try:
                 futures[pool.submit(run_member, member.data, threads)] = number
-            except BrokenExecutor:  # while the last of them were still being handed over
+            except BrokenExecutor:  # while members were still being submitted
                 broken.append(number)
         for future in as_completed(futures):
             number = futures[future]
@@ -104,10 +104,10 @@ def _run(
             except BrokenExecutor:
                 broken.append(number)
                 continue
-            except CancelledError:  # by nobody here: a scheduler that has died takes its futures along
+            except CancelledError:  # a scheduler that has died cancels its futures
                 given_up.append(number)
                 continue
-            except Exception as error:  # of the way there or back
+            except Exception as error:  # of the transfer to or from the worker
                 outcome = Outcome(FAILED, reason(error), {}, {}, b"")
             done(number, outcome)
     except BaseException:

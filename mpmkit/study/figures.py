@@ -1,4 +1,4 @@
-"""Figures of a study: histories over each other, and their differences from the first that finished."""
+"""Figures of a study: all histories in one chart, and their differences from the first finished member."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ SHOWN = {
 """Histories that are drawn, with their labels and scales."""
 DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
 MOST_NAMED = 24
-"""Members that a legend can name."""
+"""Most members in a legend."""
 MOST_BESIDE, LONGEST_BESIDE = 12, 48
-"""Members, and letters of a name, that the legend has room for in a place of the grid that is left."""
+"""Most members, and characters of a name, for a legend in an empty place of the grid."""
 WIDTH_OF_LEGEND = 120
-"""Letters side by side in a legend below."""
+"""Characters in a row of a legend below the charts."""
 
 
 def draw(dataset: xarray.Dataset, directory: Path) -> list[Path]:
-    """Draw what the members' histories hold; returns the PNG files written."""
+    """Draw the histories of the members; return the PNG files written."""
     written = []
     with figure_style():
         for name, differences in (("histories", False), ("differences", True)):
@@ -96,12 +96,12 @@ def _figure(dataset: xarray.Dataset, differences: bool) -> Figure | None:
 
 
 def _styles(shape: tuple[int, ...]) -> list[tuple[str, Any]]:
-    """Colour and dashes of each member: colours that are told apart, and no more of them than there are.
+    """Colour and dashes of each member, from a limited number of distinct colours.
 
-    Of more members than colours, one dimension of the grid goes by colour and the others by dashes.
+    With more members than colours, colours show one dimension of the grid and dashes the others.
     """
     colours, count = len(CATEGORIES), int(np.prod(shape))
-    # Few members have dashes of their own as well, so that of two curves that coincide both are seen.
+    # Few members also get different dashes, so that two coinciding curves are both visible.
     by_number = [(n % colours, n if count <= colours else n // colours) for n in range(count)]
     fitting = [axis for axis, size in enumerate(shape) if 1 < size <= colours]
     if count > colours and fitting:

@@ -1,4 +1,4 @@
-"""What a member of a study is called in figures and messages: the name of each dimension, and units."""
+"""Names of members in figures and messages: the name of each dimension, and units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .members import MEMBER
 
 
 def unit_of(case: Case, path: str) -> str | None:
-    """Unit of the quantity at a path of a case; None where there is none."""
+    """Unit of the quantity at a path of a case; None if it has none."""
     node: Any = case
     unit = None
     for key in path.split("."):
@@ -32,7 +32,7 @@ def unit_of(case: Case, path: str) -> str | None:
 
 
 def short_names(paths: list[str]) -> dict[str, str]:
-    """Each path's last part in words, with as many parts before it as tell it from the others."""
+    """The last part of each path in words, with as many parts before it as needed to make it unique."""
     found = {}
     for path in paths:
         parts = path.split(".")

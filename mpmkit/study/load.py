@@ -1,4 +1,4 @@
-"""Reading study files, to the standard of case files."""
+"""Reading study files, with the same checks as for case files."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .model import Study
 
 
 def load_study(path: str | Path) -> Study:
-    """Read and validate a study file; the path of its case, and those in it, count from there.
+    """Read and validate a study file; relative paths start from the folder of this file.
 
     Raises:
-        CaseError: the study cannot be read, or says something that no study can.
+        CaseError: the study cannot be read or is not valid.
     """
     data = read_json(path, "study")
     if isinstance(data, dict):

@@ -1,4 +1,4 @@
-"""The members of a study: one case each, and its place along the dimensions that are varied."""
+"""The members of a study: one case each, with its place along the varied dimensions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from ..version import __version__
 from .model import Changes, Study, shown
 
 MOST = 10_000
-"""Members of a study, far more than anybody waits for."""
+"""Most members of a study."""
 MEMBER = "member"
 """The one dimension of a list of members."""
 
@@ -36,33 +36,33 @@ class Member:
     """One variation."""
 
     labels: dict[str, Any]
-    """where it stands, by dimension: a value, or the name of a set of values"""
+    """its place along each dimension: a value, or the name of a set of values"""
     data: dict[str, Any]
     """its case, as the content of a case file"""
     case: Case
     remarks: list[str] = field(default_factory=list)
-    """what was done to the case that nobody asked for in so many words"""
+    """changes of the case that the study did not ask for explicitly"""
 
     @property
     def title(self) -> str:
-        """What it is called in figures and messages."""
+        """Its name in figures and messages."""
         return ", ".join(shown(label) for label in self.labels.values())
 
     @property
     def slug(self) -> str:
-        """Name of its directory: readable, and its own."""
+        """Name of its directory: readable and unique."""
         readable = re.sub(r"[^A-Za-z0-9.-]+", "-", self.title).strip("-.")[:60]
         own = hashlib.sha256(json.dumps(self.labels, sort_keys=True).encode()).hexdigest()[:8]
         return f"{readable}-{own}"
 
-    @cached_property  # a mesh that it names may change meanwhile
+    @cached_property  # its mesh file may change later
     def case_digest(self) -> str:
-        """Of the case, meshes included."""
+        """Hash of the case, meshes included."""
         return _digest(portable(self.case))
 
     @cached_property
     def digest(self) -> str:
-        """Of everything that its result depends on: the case, and what runs it."""
+        """Hash of everything that its result depends on: the case and the versions."""
         plugins = plugins_used(self.case)
         return _digest({"case": self.case_digest, "mpmkit": __version__, "plugins": plugins})
 
@@ -91,7 +91,7 @@ def members_of(study: Study) -> list[Member]:
         count *= len(labels)
     if count > MOST:
         raise CaseError(f"the study has {count} members; it may have {MOST:,} at most")
-    # A name for the path of a member, not for its own: every member's run is kept under its labels.
+    # All members keep the name of the case: their runs are stored under their labels.
     return [
         _member(study, base, dict(zip(axes, labels, strict=True)))
         for labels in itertools.product(*axes.values())
@@ -117,12 +117,12 @@ def _member(study: Study, base: dict[str, Any], labels: dict[str, Any]) -> Membe
 
 
 def _outermost_first(changes: Changes) -> Changes:
-    """Changes in an order in which none undoes another: a part of a place comes after the place."""
+    """Changes sorted so that none replaces another: a place comes before its parts."""
     return dict(sorted(changes.items(), key=lambda change: change[0].count(".")))
 
 
 def _with_parameters(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], Changes]:
-    """The case in numbers, and the changes that are not of its parameters: a new law is fitted to numbers."""
+    """The case with its parameters as numbers, and the other changes: a new law is fitted to numbers."""
     data = copy.deepcopy(base)
     refuse_unused(data, "its case")
     own = {path: value for path, value in changes.items() if path.partition(".")[0] == BLOCK}
@@ -132,10 +132,10 @@ def _with_parameters(base: dict[str, Any], changes: Changes) -> tuple[dict[str, 
 
 
 def laws_made_over(base: dict[str, Any], changes: Changes) -> tuple[dict[str, Any], list[str]]:
-    """The case with each material made over where a change names another law.
+    """The case with each material converted if a change names another law.
 
-    Parameters that are changed along with the law count as given: the rest is fitted around them, and to the
-    curve that the old law has with them.
+    Parameters that are changed together with the law are fixed. The others are fitted to the flow curve of
+    the old law with these changes.
     """
     remarks: list[str] = []
     base = copy.deepcopy(base)
@@ -156,7 +156,7 @@ def laws_made_over(base: dict[str, Any], changes: Changes) -> tuple[dict[str, An
 
 
 def _at(data: Any, path: str) -> Any:
-    """What is at a path; None if nothing is."""
+    """The value at a path; None if there is none."""
     for key in path.split("."):
         if isinstance(data, dict):
             data = data.get(key)

@@ -1,4 +1,4 @@
-"""The study: a case, and what is varied in it, as a pydantic model."""
+"""The study: a case and its variations, as a pydantic model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .quantities import TAKEN
 
 
 def _said(kind: str, allowed: str) -> WithJsonSchema:
-    """The schema of a type, with what may stand there in words: those of the sentence about a bad value."""
+    """The schema of a type, with the allowed values in words, which error messages use."""
     return WithJsonSchema({"type": kind, "allowed": allowed})
 
 
@@ -24,7 +24,7 @@ Changes = Annotated[
 ]
 """New values by their paths in the case."""
 DIMENSION = r"[A-Za-z0-9_][A-Za-z0-9_.-]*"
-"""What a dimension may be called: NetCDF's names, and no more of them than are easily typed."""
+"""Allowed names of a dimension: NetCDF names that are easy to type."""
 
 
 class Study(Model):
@@ -43,14 +43,14 @@ class Study(Model):
     case: (
         Annotated[str, _said("string", "the path of a case file")]
         | Annotated[dict[str, Any], _said("object", "a case itself")]
-    ) = Field(description="the case that is varied: a file, its path from the study's, or the case itself")
+    ) = Field(description="the case that is varied: a file, relative to the study file, or the case itself")
     common: Changes = Field(default={}, description="values by path that all members have")
     vary: dict[str, Annotated[list[Any], _said("array", "a list of values")] | dict[str, Changes]] = Field(
         default={},
-        description="dimensions of a grid: the values of one path, or by name sets of values by path",
+        description="dimensions of a grid: a list of values of one path, or named sets of values by path",
     )
     members: dict[str, Changes] = Field(
-        default={}, description="instead of a grid, a list: by name what is changed"
+        default={}, description="a list instead of a grid: the changes of each member, by name"
     )
     threads: int = Field(default=1, ge=1, description="threads of each member")
 
@@ -68,7 +68,7 @@ class Study(Model):
                 raise ValueError(f"vary.{name} has the name of a result; it must be called something else")
             if not choices:
                 raise ValueError(f"vary.{name} is empty; it must list at least one value")
-            # As they are shown, since so they are told apart in the dataset: 1 is not 1.0, but "1" is 1.
+            # Compared as text, as in the dataset: 1 and 1.0 differ, but "1" and 1 are the same.
             labels = [shown(choice) for choice in choices]
             twice = next((label for label in labels if labels.count(label) > 1), None)
             if twice is not None:
@@ -98,5 +98,5 @@ class Study(Model):
 
 
 def shown(label: Any) -> str:
-    """A label as a person writes it."""
+    """A label as text."""
     return label if isinstance(label, str) else json.dumps(label, ensure_ascii=False)

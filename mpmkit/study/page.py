@@ -1,4 +1,4 @@
-"""The page of a study: its members in a table, their histories over each other, and error against cost."""
+"""The page of a study: a table of its members, their histories in charts, and error against cost."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from .table import COLUMNS, fate_of, shown_in_table
 
 NAME = "index.html"
 MOST_CURVES = 40
-"""Members whose histories are drawn; of more, evenly spread ones."""
+"""Most members whose histories are drawn; of more members, an even selection is drawn."""
 JUDGED = ("spread_diameter", "height", "kinetic_energy")
-"""Histories by which members are judged: the first that can be."""
+"""Histories for the error of members; the first that the dataset has is used."""
 
 
 def write_page(dataset: xarray.Dataset, directory: Path) -> Path:
@@ -34,7 +34,7 @@ def write_page(dataset: xarray.Dataset, directory: Path) -> Path:
 
     Args:
         dataset: of ``collect``.
-        directory: of the study, which has the directories of the members.
+        directory: of the study; it contains the directories of the members.
 
     Raises:
         OutputError: where it cannot be written.
@@ -61,17 +61,17 @@ def write_page(dataset: xarray.Dataset, directory: Path) -> Path:
 def _overview(dataset: xarray.Dataset) -> Section:
     fates = [str(fate) for fate in dataset.fate.values.ravel()]
     finished, waiting = fates.count("finished"), fates.count("")
-    said = f"{finished} of {len(fates)} members came to their end."
+    said = f"{finished} of {len(fates)} members finished."
     if waiting:
         said += f" {waiting} have not run yet."
     if stopped := len(fates) - finished - waiting:
-        said += f" {stopped} stopped before; the table says why."
+        said += f" {stopped} stopped before the end; the table says why."
     varied = ", ".join(f"{name} ({dataset.sizes[name]})" for name in map(str, dataset.fate.dims))
     return Section("overview", "Results", paragraph(said, "lead") + paragraph(f"Varied: {varied}."))
 
 
 def _cost(dataset: xarray.Dataset) -> Section | None:
-    """Error against cost of the members that finished; None where there are no two to compare."""
+    """Error against cost of the finished members; None if there are no two to compare."""
     for variable in JUDGED:
         try:
             found = chart(dataset, variable)
@@ -96,8 +96,8 @@ def _cost(dataset: xarray.Dataset) -> Section | None:
             "logarithmic": True,
         }
         body = charts({"cost": f"Error of {variable} against cost"}) + note(
-            f"The error is the largest departure of the history from that of {found.against}, over its "
-            "largest value. Of the first kind no other member is both cheaper and closer."
+            f"The error is the largest difference between the history and that of {found.against}, relative "
+            "to its largest value. Of the first kind, no other member is cheaper and more accurate."
         )
         return Section("cost", "Error against cost", body, {"charts": {"cost": data}})
     return None
@@ -158,7 +158,7 @@ def _table(dataset: xarray.Dataset, directory: Path) -> Section:
 
 
 def _directories(directory: Path) -> dict[tuple[str, ...], str]:
-    """Directories of the members, from that of the study, by their labels."""
+    """Directories of the members, relative to the study's directory, by their labels."""
     from .members import shown
 
     found = {}
@@ -173,7 +173,7 @@ def _directories(directory: Path) -> dict[tuple[str, ...], str]:
 
 def _made(dataset: xarray.Dataset) -> Section:
     text = json.dumps(json.loads(dataset.attrs.get("study", "{}")), indent=2, ensure_ascii=False)
-    body = paragraph("To run the members that are missing, and draw all again:")
+    body = paragraph("To run the missing members and make the results again:")
     command = "mpmkit study DIRECTORY/study.json --out DIRECTORY"
     body += f'<pre class="command" tabindex="0"><code>{command}</code></pre>'
     body += folded("The whole study", f'<pre tabindex="0"><code>{escape(text)}</code></pre>')

@@ -1,4 +1,4 @@
-"""Processes of this machine to run members in."""
+"""Processes of this machine that run members."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from typing import Any
 def processes(workers: int, each_alone: bool) -> Iterator[Executor]:
     """An executor that runs ``workers`` members at once.
 
-    Whatever ends the block, no process goes on after it, and none leaves a file behind: not even one that
-    was killed.
+    After the block no process is left, however the block ends. No process leaves temporary files, not even
+    one that was killed.
 
     Args:
         workers: processes at a time.
-        each_alone: whether each member gets a process of its own, so that one that dies takes no other along.
+        each_alone: whether each member gets its own process, so that a crash affects no other member.
     """
     others = set(multiprocessing.active_children())
     with tempfile.TemporaryDirectory(prefix="mpmkit-study-", ignore_cleanup_errors=True) as place:
@@ -44,7 +44,7 @@ def cores() -> int:
 
 
 class _Pool(ProcessPoolExecutor):
-    """Processes that leave Ctrl-C to their parent."""
+    """Processes that ignore Ctrl-C; their parent handles it."""
 
     def __init__(self, workers: int, place: str) -> None:
         # Spawned, not forked: numba's threads do not survive a fork.
@@ -52,7 +52,7 @@ class _Pool(ProcessPoolExecutor):
         super().__init__(workers, mp_context=context, initializer=_begin, initargs=(place,))
 
     def submit(self, work: Callable, /, *arguments: Any, **options: Any) -> Future:
-        with _interrupts_held_back():  # here processes start, and inherit it
+        with _interrupts_held_back():  # processes start here and inherit the setting
             return super().submit(work, *arguments, **options)
 
 
@@ -73,7 +73,7 @@ class _Alone(ThreadPoolExecutor):
 
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Ctrl-C goes to every process of a terminal: one that is just starting would answer with a traceback."""
+    """A terminal sends Ctrl-C to all its processes: one that is just starting would print a traceback."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

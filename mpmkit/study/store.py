@@ -1,4 +1,4 @@
-"""The directory of a study: what its members gave, member by member, so that none is run twice."""
+"""The directory of a study: the results of each member, so that no member is run twice."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from .table import table
 from .work import FAILED, Outcome
 
 DRAWN = ("table.md", "histories.png", "differences.png", "chart.png", "index.html")
-"""Files, beside ``results.nc``, that are made from all members together."""
+"""Files made from all members together, besides ``results.nc``."""
 KINDS = {"labels": dict, "fate": str, "sentence": str, "summary": dict, "cost": dict}
-"""What every ``member.json`` has."""
+"""Keys of every ``member.json``."""
 
 
 class Store:
@@ -34,7 +34,7 @@ class Store:
 
     Args:
         path: the directory; a leading ``~`` is the home folder.
-        overwrite: whether results there that a study does not go on with may be replaced.
+        overwrite: whether existing results that the study cannot continue from may be replaced.
     """
 
     def __init__(self, path: Path, overwrite: bool = False) -> None:
@@ -45,11 +45,11 @@ class Store:
 
     @contextmanager
     def claimed(self, study: Study, members: list[Member] | None = None) -> Iterator[None]:
-        """As ``open``, and keep every other study out of the directory inside the block.
+        """As ``open``, and lock the directory against other studies inside the block.
 
         Raises:
-            CaseError: there is something in it that must not be replaced.
-            OutputError: it cannot be written, or another study is at work there.
+            CaseError: the directory contains files that must not be replaced.
+            OutputError: it cannot be written, or another study is running there.
         """
         self._make()
         with alone_in(self.path, "study"):
@@ -57,14 +57,14 @@ class Store:
             yield
 
     def open(self, study: Study, members: list[Member] | None = None) -> None:
-        """Make the directory, or go on in one that holds a study.
+        """Make the directory, or continue in one that holds a study.
 
         Args:
             study: that is to be run.
             members: of the study; default: as ``members_of`` makes them.
 
         Raises:
-            CaseError: there is something in it that must not be replaced.
+            CaseError: the directory contains files that must not be replaced.
             OutputError: it cannot be written.
         """
         self._make()
@@ -90,10 +90,10 @@ class Store:
             raise cannot_write(self.path, error) from error
 
     def _replaced_by(self, members: list[Member]) -> dict[Path, str]:
-        """Directories and names of the members kept here that a study has not, or with another case.
+        """Directories and names of stored members that the study does not have, or has with another case.
 
-        One that failed has no result to lose. The same case of another version of mpmkit, or of a plug-in,
-        is run again in its place.
+        Failed members are left out: they have no result. A member with the same case but another version of
+        mpmkit or of a plug-in is run again and replaced.
         """
         wanted = {self.directory(member): member for member in members}
         lost = {}
@@ -107,12 +107,12 @@ class Store:
         return lost
 
     def _clear(self, directories: Iterable[Path]) -> None:
-        """Delete what was written for members, and of all members together; nothing else."""
+        """Delete the files of these members and the files made from all members; nothing else."""
         try:
             for directory in directories:
                 for name in ("member.json", "history.nc", "case.json"):
                     (directory / name).unlink(missing_ok=True)
-                with suppress(OSError):  # something of the user's is in it
+                with suppress(OSError):  # it contains a file of the user
                     directory.rmdir()
             for path in (self.results, *(self.path / name for name in DRAWN)):
                 path.unlink(missing_ok=True)
@@ -123,7 +123,7 @@ class Store:
         return self.path / "members" / member.slug
 
     def keep(self, member: Member, outcome: Outcome) -> None:
-        """Write what became of a member; its ``member.json`` comes last, and says that it is complete."""
+        """Write the result of a member; ``member.json`` is written last and shows that it is complete."""
         directory = self.directory(member)
         try:
             directory.mkdir(parents=True, exist_ok=True)
@@ -142,15 +142,15 @@ class Store:
         write_json(directory / "member.json", {"labels": member.labels, **digests, **record})
 
     def outcome(self, member: Member) -> dict[str, Any] | None:
-        """What is kept of a member that ran, of this very case with these versions; None if none did.
+        """The stored result of a member with the same case and versions; None if there is none.
 
-        What is damaged counts as nothing, so that the member is run again.
+        A damaged result counts as missing, so that the member is run again.
         """
         record = _record(self.directory(member) / "member.json")
         return record if self._is_of(record, member) and self._whole(record, member) else None
 
     def damaged(self, member: Member) -> Path | None:
-        """The file of a member that ran which is not as it was written; None if there is none."""
+        """A file of a finished member that was changed or lost; None if there is none."""
         path = self.directory(member) / "member.json"
         record = _record(path)
         if record is None:
@@ -171,15 +171,15 @@ class Store:
         return record.get("history_digest") == _digest(content)
 
     def settled(self, member: Member) -> bool:
-        """Whether a member has come to an end that it would come to again: its own, or a guard's.
+        """Whether a repeated run would end in the same way: finished, or stopped by a guard.
 
-        What failed may have failed of the machine, or of something that was not installed.
+        A failed member may have failed because of the machine or a missing package.
         """
         record = self.outcome(member)
         return record is not None and record["fate"] != FAILED
 
     def write(self, dataset: xarray.Dataset) -> None:
-        """Write everything there is, ``results.nc``, ``table.md``, the figures and the page."""
+        """Write ``results.nc``, ``table.md``, the figures and the page."""
         from .figures import draw
         from .page import write_page
 
@@ -190,7 +190,7 @@ class Store:
         write_page(dataset, self.path)
 
     def history(self, member: Member) -> Path | None:
-        """Its history; None where it left none."""
+        """Its history; None if there is none."""
         path = self._history(member)
         return path if path.exists() and path.stat().st_size else None
 
@@ -199,7 +199,7 @@ class Store:
 
 
 def _record(path: Path) -> dict[str, Any] | None:
-    """What a ``member.json`` holds; None where it cannot be read as one."""
+    """The content of a ``member.json``; None if it is not valid."""
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -22,11 +22,11 @@ COLUMNS = (
 
 
 BAR = r"\|"
-"""A bar that does not end a cell."""
+"""A bar as text; a plain bar would end a cell."""
 
 
 def table(dataset: xarray.Dataset) -> str:
-    """Markdown: a row for each member, its labels first, its fate last."""
+    """Markdown table: a row for each member, with its labels first and how it ended last."""
     dimensions = dataset.fate.dims
     headings = [*dimensions, *(heading for _, heading, _, _ in COLUMNS), "fate"]
     lines = [f"| {' | '.join(map(str, headings))} |", f"|{'---|' * len(headings)}"]

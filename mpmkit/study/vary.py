@@ -1,4 +1,4 @@
-"""``--vary PATH=A,B``: the dimensions of a study as they are typed."""
+"""``--vary PATH=A,B``: the dimensions of a study on the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OPENING, CLOSING = "[{", "]}"
 
 
 def parse_vary(options: Iterable[str]) -> dict[str, list[Any]]:
-    """Paths and values of ``path.to.key=a,b,c``; each value is JSON, or else taken as text.
+    """Paths and values of ``path.to.key=a,b,c``; each value is JSON, or text if it is not valid JSON.
 
     Raises:
         CaseError: an option cannot be read, or a path is given twice.
@@ -31,7 +31,7 @@ def parse_vary(options: Iterable[str]) -> dict[str, list[Any]]:
 
 
 def _split(text: str) -> list[str]:
-    """At the commas that are in no list, object or string."""
+    """Split at the commas outside lists, objects and strings."""
     parts, depth, quoted = [""], 0, False
     for character in text:
         if character == '"':

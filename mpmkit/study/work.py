@@ -1,4 +1,4 @@
-"""One member's run, wherever it takes place: a process of its own here, or a machine far away."""
+"""The run of one member, in a process of this machine or on another machine."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ import numpy as np
 from ..errors import GuardStop, reason
 
 FAILED = "failed"
-"""Fate of a member that could not be run, or met an error that no guard knows."""
+"""Fate of a member that could not be run, or that ended with an unexpected error."""
 MOMENT = 1e-9
-"""Part of a run that is one step, with which all code is loaded."""
+"""Part of the run time of the warm-up run, which takes one step to load all code."""
 TURN = threading.Lock()
-"""One member at a time in a process, where an executor works with threads: the CPU's clock, numba's threads
-and NetCDF's library are the whole process's."""
+"""Lock for executors with threads: one member at a time in a process, because CPU time, numba's threads and
+the NetCDF library are shared by the whole process."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a member; all of it can travel from one machine to another."""
+    """The result of a member; it can be sent from one machine to another."""
 
     fate: str
     """``finished``, or the name of the guard that stopped it, or ``failed``"""
     sentence: str
-    """what there is to say of a bad end"""
+    """error message, if it did not finish"""
     summary: dict[str, Any]
     cost: dict[str, float]
     """wall_seconds, cpu_seconds, steps, particle_steps, memory_bytes"""
     history: bytes
-    """of ``history.nc``; empty where there is none"""
+    """bytes of ``history.nc``; empty if there is none"""
 
 
 def run_member(data: dict[str, Any], threads: int) -> Outcome:
-    """Run a case and return what it did; nothing is left behind on the machine that ran it.
+    """Run a case and return its result; no file stays on the machine that ran it.
 
     The seconds are those of the run itself: kernels are loaded, or compiled, before the clock starts.
     """
-    with TURN, np.errstate(all="ignore"):  # its guard reports a run that diverges
+    with TURN, np.errstate(all="ignore"):  # a guard reports a diverging run
         return _run(data, threads)
 
 
@@ -62,7 +62,7 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
         return Outcome(FAILED, reason(error), {}, {}, b"")
     fate, sentence = "finished", ""
     with tempfile.TemporaryDirectory() as place:
-        with suppress(Exception):  # which the run meets again, as something to tell of
+        with suppress(Exception):  # the run meets the error again and reports it
             moment = case.model_copy(update={"until": MOMENT * case.end})
             run(moment, Path(place) / "moment", threads=threads)
         out = Path(place) / "run"

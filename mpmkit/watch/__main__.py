@@ -15,16 +15,16 @@ from .server import Server
 
 
 def main() -> None:
-    """Serve until whoever started this closes the pipe, which the system does as well where it dies."""
+    """Serve until the parent process closes the pipe; the system closes it if the parent dies."""
     with suppress(OSError, AttributeError):
-        os.nice(2)  # the run goes first; much less would get no answer through on a busy machine
+        os.nice(2)  # below the run; a lower priority gives no answers on a busy machine
     server = Server(Path(sys.argv[1]), resumed="--resumed" in sys.argv[2:])
     print(server.address, flush=True)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     threading.Thread(target=server.pages.prepare, daemon=True).start()
     sys.stdin.read()
     server.end()
-    os._exit(0)  # a request that is being answered must not keep it
+    os._exit(0)  # do not wait for an open request
 
 
 main()

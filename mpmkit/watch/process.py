@@ -1,4 +1,4 @@
-"""The server as the run sees it: a process that is started before it and ends with it."""
+"""The server process, which starts before the run and ends with it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 
 LINGER = 5.0
-"""Seconds that a browser has, once the run is done, to fetch the last page."""
+"""Seconds that a browser has to load the last page after the end of the run."""
 
 
 class Watch:
@@ -19,8 +19,8 @@ class Watch:
 
     Args:
         directory: of the run.
-        resumed: whether what is in the directory now is of this run.
-        tell: called with the address, once there is one; from another thread.
+        resumed: whether the files that are in the directory now belong to this run.
+        tell: called from another thread with the address, as soon as it is known.
     """
 
     def __init__(self, directory: Path, resumed: bool, tell: Callable[[str], None]) -> None:
@@ -30,8 +30,8 @@ class Watch:
         self._process: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> Watch:
-        # A group of its own: Ctrl-C is for the run, which then ends this process in its own time. Not a
-        # session of its own: Linux would give it the share of a run, whatever its priority.
+        # A separate process group: Ctrl-C goes to the run only, which then ends this process. Not a separate
+        # session: Linux would then give it as much processor time as the run, whatever its priority.
         self._process = subprocess.Popen(
             self._command,
             stdin=subprocess.PIPE,
@@ -54,7 +54,7 @@ class Watch:
         assert process is not None
         assert process.stdin is not None
         with suppress(OSError):
-            process.stdin.close()  # by which it knows that the run has ended
+            process.stdin.close()  # this tells the server that the run has ended
         try:
             if kind is None:
                 with suppress(subprocess.TimeoutExpired):

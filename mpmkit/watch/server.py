@@ -1,4 +1,4 @@
-"""A small server on the loopback: the page of a run, and its history so far as JSON."""
+"""A small server on the loopback interface: the page of a run, and its history so far as JSON."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .so_far import SoFar
 
 HOST = "127.0.0.1"
 FOLLOWED = 6.0
-"""Seconds since the last question of a browser for which somebody is watching."""
+"""A browser counts as watching if its last request is at most this many seconds old."""
 FAREWELL = 4.0
-"""Seconds that such a browser has to learn that the run has ended."""
+"""Seconds that such a browser has to notice that the run has ended."""
 
 
 class Server(ThreadingHTTPServer):
@@ -24,7 +24,7 @@ class Server(ThreadingHTTPServer):
 
     Args:
         directory: of the run.
-        resumed: whether what is in it is of this run.
+        resumed: whether the files in it belong to this run.
     """
 
     daemon_threads = True
@@ -35,9 +35,9 @@ class Server(ThreadingHTTPServer):
         self.pages = Pages(self.so_far)
         self.ended = False
         self.asked = -FOLLOWED
-        """when a browser last asked how the run is, by the monotonic clock"""
+        """time of the last request for the state of the run, by the monotonic clock"""
         self.told = threading.Event()
-        """that the run has ended"""
+        """set when the run has ended"""
 
     @property
     def address(self) -> str:
@@ -51,7 +51,7 @@ class Server(ThreadingHTTPServer):
             self.told.wait(FAREWELL)
 
     def state(self) -> dict[str, Any]:
-        """What a page asks for every other second."""
+        """The state of the run, which a page requests every 1.5 seconds."""
         self.asked = clock.monotonic()
         return {
             "version": self.pages.version(),
@@ -67,7 +67,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         if not self._is_for_us():
-            self.send_error(403, "This server answers to its own address alone")
+            self.send_error(403, "This server answers requests to its own address only")
             return
         path = self.path.partition("?")[0]
         if path in ("/", "/page.html"):
@@ -78,7 +78,7 @@ class _Handler(BaseHTTPRequestHandler):
         elif path == "/state.json":
             state = self.server.state()
             self._send("application/json", json.dumps(state))
-        elif path == "/farewell":  # a page has the last state, and needs nothing more
+        elif path == "/farewell":  # a page has loaded the last state
             self._send("text/plain", "")
             if self.server.ended:
                 self.server.told.set()
@@ -86,7 +86,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(404)
 
     def _is_for_us(self) -> bool:
-        """Whether the address was ours: a page from elsewhere must not reach us by a name of its own."""
+        """Whether the request names this server's address; this blocks other web pages (DNS rebinding)."""
         port = self.server.server_address[1]
         return self.headers.get("Host") in (f"{HOST}:{port}", f"localhost:{port}")
 
@@ -102,4 +102,4 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(content)
 
     def log_message(self, *_: Any) -> None:
-        """Say nothing: the terminal is the run's."""
+        """Print nothing: the terminal belongs to the run."""

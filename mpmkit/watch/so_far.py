@@ -1,4 +1,4 @@
-"""What a run has written so far."""
+"""The results that a run has written so far."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ..output import RunDirectory
 from ..output.netcdf import read_scalars
 
 MOST_ROWS = 1000
-"""Of a history that is sent: a screen has no more columns."""
+"""Most rows of a history that are sent; a screen cannot show more."""
 NOTHING = "nothing yet"
-"""Version of a run that has not written a row."""
+"""Version as long as the run has not written a row."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class Series:
 
 
 class SoFar:
-    """The history of a run at work, read when it has changed.
+    """The history of a run in progress, read when it has changed.
 
     Args:
         directory: of the run.
-        resumed: whether a history that is there now is of this run, and not of one that it replaces.
+        resumed: whether a history that exists now belongs to this run, and not to an earlier run.
     """
 
     def __init__(self, directory: Path, resumed: bool) -> None:
@@ -44,7 +44,7 @@ class SoFar:
         self._read = (NOTHING, self._empty())
 
     def version(self) -> str:
-        """Another text whenever the run has written something that its page shows."""
+        """A text that changes when the run has written something that its page shows."""
         written = self._written()
         if written in (NOTHING, self._of_another):
             return NOTHING
@@ -76,7 +76,7 @@ class SoFar:
         }
 
     def _load(self, version: str) -> dict[str, Any]:
-        """Read the history; where it is being replaced at this very moment, the next look finds it."""
+        """Read the history; if it is just being replaced, the next call reads it."""
         try:
             time, series = _scalars(self.run.history)
             case = json.loads(self.run.case.read_text(encoding="utf-8"))
@@ -92,10 +92,10 @@ class SoFar:
 
 
 def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
-    """Times, s, and the scalars of a history by name; fields of particles, which may be large, are not read.
+    """Times, s, and the scalars of a history by name. Fields of particles can be large and are not read.
 
     Raises:
-        OSError, RuntimeError: there is none at the path, or a part of one.
+        OSError, RuntimeError: the file is missing or incomplete.
     """
     scalars = read_scalars(path)
     count = len(scalars["time"][0])
@@ -108,7 +108,7 @@ def _scalars(path: Path) -> tuple[list[float | None], dict[str, Series]]:
 
 
 def _stamp(path: Path) -> str:
-    """Another text whenever a file is another one; empty where there is none."""
+    """A text that changes when the file is replaced; empty if there is no file."""
     try:
         found = path.stat()
     except OSError:
@@ -117,5 +117,5 @@ def _stamp(path: Path) -> str:
 
 
 def _listed(values: np.ndarray) -> list[float | None]:
-    """Numbers as JSON has them; None for what is not finite."""
+    """Numbers for JSON; None for values that are not finite."""
     return [float(value) if np.isfinite(value) else None for value in values]

@@ -34,7 +34,7 @@ def make_movie(
         listen: called after each picture with its number, from 1, and the number of all.
 
     Raises:
-        CaseError: the directory holds no run, or too few frames; or the file cannot be of that kind.
+        CaseError: the directory holds no run, there are too few frames, or the file type is not supported.
         OutputError: it cannot be written.
     """
     require_writer(out)
@@ -42,7 +42,7 @@ def make_movie(
     frames, quantity = shown_frames(results, directory), QUANTITIES[colour_by]
     _require_field(frames[0][1], quantity)
     if not any(len(drawable(path, results, quantity.field)["body"]) for _, path in frames):
-        raise CaseError(f"the frames of the run in '{directory}' hold nothing that can be drawn")
+        raise CaseError(f"the frames of the run in '{directory}' contain nothing that can be drawn")
     drawn: list[np.ndarray] = []
     with figure_style():
         for picture in _pictures(results, frames, quantity):

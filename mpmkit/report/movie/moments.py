@@ -1,4 +1,4 @@
-"""The frames that a movie shows: evenly in time, so that it runs as the material does."""
+"""The frames that a movie shows: evenly spaced in time, so that the flow has its true speed."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from ...errors import CaseError
 from ..run_results import RunResults
 
 LEAST = 2
-"""Frames of which something moves."""
+"""Least number of frames of a movie."""
 
 
 def shown_frames(results: RunResults, directory: Path) -> list[tuple[float, Path]]:
     """Times, s, and files of the frames to show.
 
     A run also has frames at the snapshot times of its report, which lie between the others: if they were
-    shown, the movie would halt at them.
+    shown, the movie would stop for a moment at each of them.
 
     Raises:
         CaseError: there are too few; the sentence names the key by which a run gets more.

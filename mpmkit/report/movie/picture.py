@@ -14,13 +14,13 @@ WIDTH, TALLEST = 7.2, 7.2
 """Of a picture, inch."""
 DPI = 100
 ABOUT = np.array([1.1, 1.25])
-"""Room beside the drawing for what is written, inch."""
+"""Space beside the drawing for text, inch."""
 
 
 def empty_picture(extent: np.ndarray) -> tuple[Figure, Axes]:
     """A figure for a drawing of a width and a height ``extent`` in the same scale.
 
-    Its layout is fixed: what is fitted to each picture anew would make the movie shake.
+    The layout is the same for all pictures; otherwise the drawing would jump from picture to picture.
     """
     width = WIDTH - ABOUT[0]
     height = width * extent[1] / extent[0]
@@ -34,7 +34,7 @@ def empty_picture(extent: np.ndarray) -> tuple[Figure, Axes]:
 
 
 def add_title(figure: Figure, text: str, time: str) -> None:
-    """The name of the run at the left, the time at the right, where its digits do not move the name."""
+    """Write the name of the run at the left and the time at the right."""
     top = 1 - 0.18 / figure.get_size_inches()[1]
     figure.text(0.02, top, text, ha="left", va="center", fontweight="bold", fontsize=11)
     figure.text(0.98, top, time, ha="right", va="center", fontsize=11, family="monospace")

@@ -1,4 +1,4 @@
-"""What a movie may be coloured by, and the one scale that holds for all its pictures."""
+"""The quantities that can colour a movie, and the colour scale that all its pictures share."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Quantity:
     field: str
     label: str
     percentiles: tuple[float, float]
-    """Ends of the scale: shear rates and pressures have a few values far beyond all others."""
+    """Percentiles at the ends of the scale; a few shear rates and pressures lie far outside."""
     ticks: tuple[str, ...] = ()
-    """Words for the values 0, 1, … of a field that has no others."""
+    """Labels of the values 0, 1, … of a field that has only these values."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Scale:
     norm: Normalize
     colour_map: str | Colormap
     extend: str
-    """at which ends values may lie beyond the scale, in matplotlib's words"""
+    """the ends of the scale that values may exceed, as matplotlib names them"""
 
 
 QUANTITIES = {

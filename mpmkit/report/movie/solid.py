@@ -1,4 +1,4 @@
-"""Pictures of a scene in three dimensions: the body as a shaded surface, its floor, and walls as glass."""
+"""Pictures of a three-dimensional scene: the body as a shaded surface, the floor, and transparent walls."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from .view import View, standard_view, wall_triangles, whole
 RESOLUTION = 640
 """Pixels across the body's picture."""
 AROUND = 0.06
-"""What is shown around the material, as a part of its largest side."""
+"""Margin around the material, relative to its largest side."""
 FLOOR = "#E9E9E6"
 ROUND = 1.7
 """Radius of a particle's ball over half the side of its box: the balls of neighbours overlap."""
 JUMP = 2.5
-"""Steps of depth, in radii, that are not smoothed away: one body before another."""
+"""Largest step of depth, in radii, that is smoothed; a larger one is the edge of a body."""
 
 
 def solid_pictures(
@@ -91,7 +91,7 @@ def _body(
     lower: np.ndarray,
     upper: np.ndarray,
 ) -> np.ndarray:
-    """The material as an RGBA picture; transparent where it is not."""
+    """The material as an RGBA picture; pixels without material are transparent."""
     size = upper - lower
     per_metre = RESOLUTION / size[0]
     shape = (max(1, round(size[1] * per_metre)), RESOLUTION)
@@ -125,7 +125,7 @@ def _floor(results: RunResults, loaded: Sequence[dict]) -> np.ndarray:
 
 
 def _draw_ruler(axes, lower: np.ndarray, upper: np.ndarray) -> None:
-    """A length to compare with, since the axes are turned: 1, 2 or 5 times a power of ten."""
+    """Draw a scale bar, 1, 2 or 5 times a power of ten long: the axes are turned and have no ticks."""
     room = 0.3 * (upper[0] - lower[0]) * MILLIMETRES
     power = 10.0 ** np.floor(np.log10(room))
     length = max(step * power for step in (1, 2, 5) if step * power <= room)

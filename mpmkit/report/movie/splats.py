@@ -1,7 +1,7 @@
-"""Particles drawn as one smooth body: each is a ball, the nearest counts, and the surface is smoothed.
+"""Particles drawn as one smooth body: each is a ball, the nearest ball is seen, and the depth is smoothed.
 
-The depth of what is seen is found pixel by pixel, smoothed where it does not jump, and its slope gives the
-normals for the light (van der Laan et al., Screen space fluid rendering with curvature flow, I3D 2009).
+The depth is found for each pixel and smoothed where it has no step. Its slope gives the surface normals for
+the light (van der Laan et al., Screen space fluid rendering with curvature flow, I3D 2009).
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 MOST_PASSES = 80
-"""Of the smoothing, each over the nearest pixels."""
+"""Most smoothing passes; each averages over the nearest pixels."""
 LIGHT = np.array([-0.45, 0.55, 0.7])
 """To the right, up, and towards the eye."""
 AMBIENT = 0.45
@@ -19,7 +19,7 @@ AMBIENT = 0.45
 def nearest_particles(
     places: np.ndarray, radius: np.ndarray, shape: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Depth of what is seen in each pixel, and the particle that it is of.
+    """Depth of the nearest ball in each pixel, and the particle of this ball.
 
     Args:
         places: ``(n, 3)`` column, row and depth of the particles, pixels; depths grow towards the eye.
@@ -27,11 +27,11 @@ def nearest_particles(
         shape: rows and columns of the picture.
 
     Returns:
-        depths, -inf where nothing is, and numbers of particles, -1 where nothing is, each of ``shape``.
+        depths (-inf without a particle) and indices of particles (-1 without a particle), each of ``shape``.
     """
     rows, columns = shape
     depth, number = np.full(shape, -np.inf), np.full(shape, -1)
-    order = np.argsort(places[:, 2], kind="stable")  # the nearest last: it is the one that is kept
+    order = np.argsort(places[:, 2], kind="stable")  # the nearest comes last and is kept
     column, row = (np.rint(places[order, axis]).astype(int) for axis in (0, 1))
     height, size = places[order, 2], radius[order]
     reach = int(np.ceil(size.max(initial=0.0)))
@@ -49,11 +49,11 @@ def nearest_particles(
 
 
 def smoothed(depth: np.ndarray, radius: float, jump: float) -> np.ndarray:
-    """The depth as a mean over about the ``radius`` of a ball, pixels, so that no ball is seen.
+    """The depth averaged over about the ``radius`` of a ball, pixels, so that single balls are not visible.
 
-    What is further than ``jump``, pixels, before or behind a pixel does not count for it.
+    A neighbour whose depth differs by more than ``jump``, pixels, is left out of the mean.
     """
-    for _ in range(min(MOST_PASSES, round(radius**2))):  # as heat, the mean reaches as far as √passes
+    for _ in range(min(MOST_PASSES, round(radius**2))):  # the averaging length is √passes
         total, weight = depth.copy(), np.ones_like(depth)
         for axis in (0, 1):
             for step in (1, -1):
@@ -71,7 +71,7 @@ def brightness(depth: np.ndarray) -> np.ndarray:
     there = np.isfinite(depth)
     slopes = []
     for axis in (1, 0):
-        # At an edge one of the two leads down to what is behind: the flatter one is of the body.
+        # At an edge, one of the two slopes leads to the background: take the flatter one.
         with np.errstate(invalid="ignore"):  # nothing beside nothing
             forth, back = np.roll(depth, -1, axis) - depth, depth - np.roll(depth, 1, axis)
             slope = np.where(np.abs(forth) < np.abs(back), forth, back)

@@ -1,4 +1,4 @@
-"""How a scene in three dimensions is seen: from far away, turned and tilted, whole."""
+"""The view of a three-dimensional scene: a parallel projection, turned and tilted, of the whole body."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..domain import symmetry_plane
 from ..run_results import RunResults
 
 AZIMUTH, ELEVATION = np.radians(-60.0), np.radians(22.0)
-"""Where the camera stands: turned about the vertical from x, and above the horizon."""
+"""Direction of the camera: angle about the vertical axis from x, and angle above the horizon."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def whole(results: RunResults, points: np.ndarray) -> list[np.ndarray]:
 
 
 def wall_triangles(results: RunResults, time: float) -> dict[str, np.ndarray]:
-    """Triangles of the walls that are there at the time of a frame, whole, m, (m, 3, 3), by name."""
+    """Triangles, m, (m, 3, 3), of the walls present in a frame, mirror images included, by name."""
     triangles = {}
     for name, path in results.walls.get(time, {}).items():
         points, parts, _ = read_wall_frame(path)

@@ -11,15 +11,15 @@ from ...errors import CaseError
 from ...output.atomic import replacing
 
 COLOURS = 256
-"""Of a picture of a GIF."""
+"""Colours of a GIF."""
 SPARSE = 3
-"""Every such row and column counts for the choice of the colours."""
+"""Every third row and column is used to choose the colours."""
 
 
 def write_gif(path: Path, pictures: Sequence[np.ndarray], fps: float) -> None:
-    """Write RGB pictures ``(height, width, 3)``, bytes, as a GIF that begins anew at its end.
+    """Write RGB pictures ``(height, width, 3)``, bytes, as a GIF that repeats for ever.
 
-    The time of a picture is a whole number of hundredths of a second: that is the format's.
+    The GIF format stores the time of a picture in whole hundredths of a second.
     """
     from PIL import Image
 
@@ -51,7 +51,7 @@ def write_mp4(path: Path, pictures: Sequence[np.ndarray], fps: float) -> None:
 
 
 def _held(pictures: Sequence[np.ndarray], fps: float) -> Iterator[np.ndarray]:
-    """The pictures, and the last one for another second, so that one sees where the flow ends."""
+    """The pictures; the last one is shown for one more second, so that the viewer sees the final state."""
     yield from pictures
     for _ in range(round(fps)):
         yield pictures[-1]
@@ -61,7 +61,7 @@ WRITERS = {".gif": write_gif, ".mp4": write_mp4}
 
 
 def require_writer(path: Path) -> None:
-    """Make sure, before anything is drawn, that a file of this ending can be written.
+    """Check before drawing that a file with this extension can be written.
 
     Raises:
         CaseError: it cannot.

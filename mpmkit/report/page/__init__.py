@@ -15,15 +15,15 @@ from .source import Source, read_source
 __all__ = ["MOST_BYTES", "page_of", "write_page"]
 
 MOST_BYTES = 3_000_000
-"""Size of a page, at the most."""
+"""Largest size of a page."""
 BEFORE = (headline,)
 BEHIND = (histories, flow_curves, balance, numerics, repeat)
-"""Sections before and behind the player, which gets the room that they leave. A new section is a file, and
-its place here."""
+"""Sections before and after the player. The player gets the rest of the allowed size. To add a section, write
+a module and add it here."""
 
 
 def page_of(directory: Path, live: bool = False) -> str:
-    """The page of a run as HTML; the run may still be at work.
+    """The page of a run as HTML; the run may still be in progress.
 
     Args:
         directory: of the run; its history must have a row.

@@ -1,4 +1,4 @@
-"""A page put together: one file of HTML, with its style, scripts and data in it."""
+"""Put a page together: one HTML file that contains its style, scripts and data."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ SCRIPTS = (
     "player.js",
     "page.js",
 )
-"""In the order in which they stand in the page; they share one scope."""
+"""Scripts in their order in the page; they share one scope."""
 FORBIDDEN = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
-"""What a page may do: all that is in it, and no request."""
+"""Content security policy of a page: it uses only what it contains and sends no request."""
 LIVE = f"{FORBIDDEN}; connect-src 'self'"
 
 

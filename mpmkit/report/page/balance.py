@@ -1,4 +1,4 @@
-"""Section: where energy and mass went, and what the walls gave."""
+"""Section: the balances of mass and energy, and the forces of the walls."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from .source import Source
 from .words import number, percent
 
 NEGLIGIBLE = 1e-4
-"""Part of the largest figure below which a chart or a curve would show nothing but noise."""
+"""A chart or curve below this part of the largest value is left out: it shows only noise."""
 LAST = 0.1
-"""Part of the rows over which a force at the end is averaged."""
+"""The final force is the mean over this last part of the rows."""
 
 
 def section(source: Source) -> Section | None:
@@ -34,8 +34,8 @@ def section(source: Source) -> Section | None:
     body += charts_side_by_side({name: f"{of['title']} against time" for name, of in charts.items()})
     if any(name.startswith("wall") for name in charts):
         body += note(
-            "Forces, torques and powers are those of the walls on the material: means over the time between "
-            "two rows of the history."
+            "The charts show force, torque and power of the walls on the material. Each value is the mean "
+            "over the time between two rows of the history."
         )
     return Section("balance", "Balance of mass and energy", body, {"charts": charts})
 
@@ -55,7 +55,7 @@ def _energies(source: Source) -> dict[str, Any] | None:
 
 
 def _walls(source: Source) -> dict[str, dict[str, Any]]:
-    """A chart for each component of force, for torque and power where there is any."""
+    """A chart for each component of force, and for torque and power if they are not zero."""
     results = source.results
     if "wall_force" not in results.history or len(results.time) < 3:
         return {}
@@ -101,7 +101,7 @@ def _mass(source: Source) -> list[tuple[str, str]]:
 
 
 def _weight(source: Source) -> list[tuple[str, str]]:
-    """What the material weighs, and what the walls carry of it at the end."""
+    """The weight of the material, and the vertical force of the walls at the end."""
     history, mass = source.results.history, source.results.series("total_mass")
     gravity = source.results.case.get("gravity") or [0.0, -STANDARD_GRAVITY]
     rows, upright = len(source.results.time), gravity[-1] < 0 and not any(gravity[:-1])
@@ -113,26 +113,26 @@ def _weight(source: Source) -> list[tuple[str, str]]:
         (
             "Walls carry",
             f"{number(float(np.mean(vertical)))} N upwards, mean over the last tenth of the run; "
-            "where the material is at rest, that is its weight",
+            "if the material is at rest, this equals the weight",
         ),
     ]
 
 
 def _energy(source: Source) -> list[tuple[str, str]]:
-    """What came in and what is left, so that the rest is what the flow turned into heat."""
+    """Energy added and energy left; the difference is the energy that the flow dissipated."""
     results = source.results
     present = {name: values for name in CURVES if (values := results.series(name)) is not None}
     if not present:
         return []
     if _has_no_balance(source):
-        said = "none, since the history does not tell what gravity does along a periodic axis"
+        said = "not available: the history does not record the work of gravity along a periodic axis"
         if _flows(source):
-            said = "none, since the history does not tell the energy of what flows in and out"
+            said = "not available: the history does not record the energy of material that flows in and out"
         return [("Balance of energy", said)]
     found = []
     potential = present.get("potential_energy")
     if potential is not None and potential.any():
-        found.append(("Energy set free by gravity", f"{number(float(potential[0] - potential[-1]))} J"))
+        found.append(("Energy released by gravity", f"{number(float(potential[0] - potential[-1]))} J"))
     if worked := _work_of_walls(source):
         which = "from" if worked > 0 else "taken by"
         found.append((f"Energy {which} moving walls", f"{number(abs(worked))} J"))
@@ -152,7 +152,7 @@ def _energy(source: Source) -> list[tuple[str, str]]:
 
 
 def _has_no_balance(source: Source) -> bool:
-    """Whether energy comes in or goes out in a way that no variable of the history tells."""
+    """Whether energy enters or leaves in a way that the history does not record."""
     case = source.results.case
     faces, gravity = case["grid"].get("faces", {}), case.get("gravity") or []
     along_periodic = any(
@@ -169,7 +169,7 @@ def _flows(source: Source) -> bool:
 
 
 def _work_of_walls(source: Source) -> float:
-    """∫ power dt, J: a row holds the mean since the row before."""
+    """∫ power dt, J; each row holds the mean power since the previous row."""
     history = source.results.history
     if "wall_power" not in history:
         return 0.0

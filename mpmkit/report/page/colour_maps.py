@@ -1,4 +1,4 @@
-"""Colours of the quantities of a flow: maps whose lightness rises evenly, for the colour-blind as well."""
+"""Colour maps of the quantities: their lightness grows evenly, so that colour-blind readers can use them."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from matplotlib.colors import to_hex
 
 STOPS = 33
 DARKEST = 0.1
-"""Where maps begin: their darkest colours would be lost on the dark background of a page."""
+"""Start of the maps: darker colours would not be visible on the dark background of a page."""
 MAPS = {"speed": "viridis", "shear_rate": "inferno", "pressure": "cividis"}
 YIELDED = ("#5b7fa6", "#e08a2e")
-"""Colours of what is at rest as a solid, and of what flows."""
+"""Colours of material at rest and of material that flows."""
 
 
 def stops(quantity: str) -> list[str]:
-    """Colours, evenly spread from the least to the largest value."""
+    """Colours at evenly spaced values, from the lowest to the highest."""
     if quantity == "yielded":
         return list(YIELDED)
     found = matplotlib.colormaps[MAPS[quantity]](np.linspace(DARKEST, 1 - DARKEST / 2, STOPS))

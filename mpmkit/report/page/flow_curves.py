@@ -1,4 +1,4 @@
-"""Section: the flow curve of each material, and which part of it the run has used."""
+"""Section: the flow curve of each material, and the range of shear rates that the run reached."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ POINTS = 121
 DECADES = (1e-3, 1e3)
 """Shear rates, 1/s, of the curve of a material that has not been sheared."""
 BEYOND = 10.0
-"""How far the curve goes on beyond what was reached."""
+"""The curve extends beyond the reached shear rates by this factor."""
 MOST, LEAST = 0.95, 0.05
-"""Between these parts of the sheared material lies the range that is shaded."""
+"""The shaded range lies between these quantiles of the sheared material."""
 SLOWEST = 1e-3
-"""Part of the largest shear rate below which material counts as at rest."""
+"""Material with less than this part of the largest shear rate counts as at rest."""
 
 
 def section(source: Source) -> Section | None:
@@ -44,7 +44,7 @@ def section(source: Source) -> Section | None:
         curve = _chart(law, reached)
         body += f"<h3>{escape(law.name)}</h3>" + pairs(_parameters(material))
         if curve is None:
-            body += note("This law is no fluid with a flow curve.")
+            body += note("This law has no flow curve.")
             continue
         charts[name] = curve
         body += chart_place(name, "Shear stress against shear rate") + note(_words(reached))
@@ -52,7 +52,7 @@ def section(source: Source) -> Section | None:
 
 
 def _materials(source: Source) -> list[tuple[Material, list[int]]]:
-    """Each material once, and the numbers of the bodies that are of it."""
+    """Each material once, with the numbers of its bodies."""
     assert source.case is not None
     found: list[tuple[Material, list[int]]] = []
     for number_, body in enumerate(source.case.bodies):
@@ -112,7 +112,7 @@ def _chart(law: Plugin, reached: tuple[float, float, float] | None) -> dict[str,
     try:
         with blaming_plugins([("law", law)]):
             stress = flow_curve(law, rates)
-    except GuardStop:  # it is no reason to have no page
+    except GuardStop:  # the rest of the page can still be made
         return None
     if stress is None or not np.isfinite(stress).all() or not (stress > 0).any():
         return None
@@ -134,7 +134,7 @@ def _words(reached: tuple[float, float, float] | None) -> str:
         return "The material was not sheared in this run."
     low, high, largest = reached
     return (
-        f"Nine tenths of the material that was sheared had shear rates between {number(low, 2)} and "
+        f"90 % of the sheared material had shear rates between {number(low, 2)} and "
         f"{number(high, 2)} 1/s (shaded); the largest was {number(largest, 2)} 1/s. Measure the material in "
-        "that range: what the curve does elsewhere has hardly any part in this result."
+        "that range: outside it, the flow curve has almost no influence on this result."
     )

@@ -1,4 +1,4 @@
-"""Section: the figures that the run was made for."""
+"""Section: the main results of the run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ENDED = {
 
 
 def section(source: Source) -> Section:
-    """How the run ended, and its figures, each with a sentence that says what it is."""
+    """How the run ended, and its main results, each with an explanation."""
     cards = "".join(
         f'<div class="card"><dt>{escape(name)}</dt><dd><strong>{escape(value)}</strong>'
         f"<span>{escape(text)}</span></dd></div>"
@@ -32,17 +32,17 @@ def section(source: Source) -> Section:
 
 
 def _ending(source: Source) -> str:
-    """How the run ended, in a sentence or two."""
+    """One or two sentences on how the run ended."""
     summary, time = source.results.summary, source.results.time
     if source.running:
         until = latest(source.results.case["until"])
-        return f"The run is at work: t = {seconds(float(time[-1]))} of {number(until)} s."
+        return f"The run is in progress: t = {seconds(float(time[-1]))} of {number(until)} s."
     why, end = summary["stopped_because"], summary.get("simulated_time") or 0.0
     if why not in ENDED:
         errors = [said.text for said in source.last_start if said.level == "ERROR"]
         return (
-            f"A guard stopped the run at t = {seconds(end)} ({why}): its last state is not to be trusted, "
-            f"and there are no final figures. {errors[-1] if errors else ''}"
+            f"A guard stopped the run at t = {seconds(end)} ({why}): do not trust its last state; "
+            f"there are no final results. {errors[-1] if errors else ''}"
         ).strip()
     return f"{ENDED[why]} at t = {seconds(end)}. {_state(source)}"
 
@@ -59,7 +59,7 @@ def _state(source: Source) -> str:
 
 
 def figures(source: Source) -> list[tuple[str, str, str]]:
-    """Name, value and explanation of each figure; what never happened says so."""
+    """Name, value and explanation of each result; the value is "never" for an event that did not occur."""
     found = []
     if _spreads(source):
         found += [_spread(source), *_t500(source), _slump(source)]
@@ -93,12 +93,12 @@ def _last(source: Source, name: str) -> float | None:
 def _spread(source: Source) -> tuple[str, str, str]:
     name = "Spread now" if source.running else "Final spread"
     if source.results.stopped_by_guard or (value := _last(source, "spread_diameter")) is None:
-        return name, "none", "the run did not come to a final shape"
+        return name, "none", "the material did not reach a final shape"
     return name, length(value), "diameter of the material on the floor, as in a slump-flow test"
 
 
 def _t500(source: Source) -> list[tuple[str, str, str]]:
-    """T500, if the material can have one at all; also from the lift of a mould that waits."""
+    """T500, if the spread can reach 500 mm; also counted from the lift, if a mould is lifted later."""
     summary, spread = source.results.summary, source.results.series("spread_diameter")
     assert spread is not None
     limit, largest = length(T500_DIAMETER), length(float(np.nanmax(spread)))
@@ -127,7 +127,7 @@ def _slump(source: Source) -> tuple[str, str, str] | None:
 
 
 def _extent(source: Source) -> list[tuple[str, str, str]]:
-    """The width, of a scene that is no slump test."""
+    """The width; for a scene that is not a slump test."""
     value = _last(source, "spread_diameter")
     if value is None or source.results.stopped_by_guard:
         return []

@@ -1,4 +1,4 @@
-"""Section: how the figures of the run changed with time."""
+"""Section: the results of the run against time."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .section import charts as charts_side_by_side
 from .source import Source
 
 ROWS = 800
-"""Rows of a history that a page holds at the most."""
+"""Most rows of a history on a page."""
 DIGITS = 7
 MM = 1e3
 
 LARGE = 10.0
-"""m, from which on lengths are drawn in m."""
+"""m; larger lengths are drawn in m, smaller ones in mm."""
 
 
 def section(source: Source) -> Section | None:
@@ -34,7 +34,7 @@ def section(source: Source) -> Section | None:
 
 
 def _shape(source: Source) -> dict[str, Any] | None:
-    """Spread, or the width of what is no slump test, and heights."""
+    """Spread (width if the scene is not a slump test) and heights."""
     wide = source.results.series("spread_diameter")
     large = wide is not None and np.nanmax(wide) >= LARGE
     unit, scale = ("m", 1.0) if large else ("mm", MM)
@@ -49,13 +49,13 @@ def _speed(source: Source) -> dict[str, Any] | None:
 
 
 def thinned(source: Source) -> str:
-    """A sentence where not all rows of the history are on the page; else nothing."""
+    """A sentence if the page does not hold all rows of the history; else an empty string."""
     rows = len(source.results.time)
     return f" The page shows {ROWS} of {rows} rows; history.nc has all." if rows > ROWS else ""
 
 
 def rows_of(source: Source) -> np.ndarray:
-    """The rows that the page holds: all, or evenly spread ones with the first and the last."""
+    """The rows that the page holds: all, or evenly spaced ones that include the first and the last."""
     rows = len(source.results.time)
     return np.arange(rows) if rows <= ROWS else np.linspace(0, rows - 1, ROWS).round().astype(int)
 

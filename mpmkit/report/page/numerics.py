@@ -1,4 +1,4 @@
-"""Section: the numerical method in plain words, and what should make one careful."""
+"""Section: the numerical method in plain words, and warnings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .source import Source
 from .words import count, length, number, percent, seconds
 
 LIMITED = re.compile(r"step \S+ s \(\S+ of the (?P<limit>[\w-]+) limit\)")
-"""What a run says of its step when it starts."""
+"""The log message about the time step at the start of a run."""
 LIMITS = {
     "acoustic": "how fast sound crosses a cell",
     "viscous": "how fast viscosity spreads a velocity over a cell",
@@ -25,12 +25,12 @@ KINDS = {
     "redistribution": "Even spacing",
     "refinement": "Splitting of particles",
 }
-"""What each plug-in of a scheme does, in words."""
+"""The role of each plug-in of a scheme, in words."""
 FRACTURED = 0.01
-"""Part of the volume in particles drawn apart that is worth a line."""
+"""Part of the volume in stretched particles above which the page says so."""
 MACH = 0.1
 DENSE = 0.05
-"""Departure of the density from the material's that is worth a line."""
+"""Difference between the density and that of the material above which the page says so."""
 
 
 def section(source: Source) -> Section:
@@ -43,7 +43,7 @@ def section(source: Source) -> Section:
     )
     body = f"<h3>Cautions</h3>{body}<h3>Method</h3>{pairs(_facts(source))}"
     if remarks := _remarks(source):
-        body += folded("What the run said when it started", bullets(remarks))
+        body += folded("Messages of the run at its start", bullets(remarks))
     return Section("numerics", "Numerics and cautions", body)
 
 
@@ -53,28 +53,28 @@ def _warnings(source: Source) -> list[str]:
 
 
 def _observations(source: Source) -> list[str]:
-    """What the history shows that a reader should know, whether the log warned of it or not."""
+    """Problems that the history shows, even if the log gave no warning about them."""
     results, found = source.results, []
     mach = results.series("mach_number")
     if mach is not None and (most := float(np.nanmax(mach))) > MACH:
         found.append(
             f"The material moved at up to {number(most, 2)} of its artificial sound speed: above {MACH:g} it "
-            "flows as if it could be compressed."
+            "behaves as a compressible one."
         )
     apart = results.series("fractured_fraction")
     if apart is not None and (most := float(np.nanmax(apart))) > FRACTURED:
         found.append(
-            f"Up to {percent(most)} of the volume was in particles drawn apart further than a cell: there "
-            "the material tears as the grid lets it, and not as a material does."
+            f"Up to {percent(most)} of the volume was in particles stretched to more than a cell. There the "
+            "material breaks apart for numerical reasons, not for physical ones."
         )
     density = results.series("density_mean")
     if density is not None and (most := float(np.nanmax(np.abs(density - 1)))) > DENSE:
-        found.append(f"The mean density inside departed by up to {percent(most)} from that of the material.")
+        found.append(f"The mean density inside the material was wrong by up to {percent(most)}.")
     return found
 
 
 def _remarks(source: Source) -> list[str]:
-    """What the run said of its scene before the first step, beside what the page shows elsewhere."""
+    """Log messages before the first step that the page does not show elsewhere."""
     said = [line.text for line in source.last_start if line.level == "INFO"]
     begun = [row for row, text in enumerate(said) if ": " in text and " particles, step " in text]
     if not begun:
@@ -85,7 +85,7 @@ def _remarks(source: Source) -> list[str]:
 
 
 def _sentence(text: str) -> str:
-    """A line of the log as a sentence; a name at its begin, such as bodies.0, stays as it is."""
+    """A line of the log as a sentence; a name at its start, such as bodies.0, is not changed."""
     word = text.split(maxsplit=1)[0]
     begin = text if any(mark in word for mark in "._'") else f"{text[0].upper()}{text[1:]}"
     return begin if begin.endswith(".") else f"{begin}."

@@ -1,6 +1,6 @@
-"""Moments as a few bytes: numbers of 8 and 16 bits, each as its change since the moment before, deflated.
+"""Moments in compact form: integers of 8 and 16 bits, as differences from the previous moment, deflated.
 
-The layout, which ``static/unpack.js`` reads. For each moment, of n particles in the order of their numbers:
+``static/unpack.js`` reads this layout. For each moment, with n particles in the order of their numbers:
 
 1. if the particles are not those of the moment before: their numbers, as n differences of 32 bits;
 2. for each axis the position, 16 bits, from the lower to the upper corner of a box around all moments;
@@ -29,7 +29,7 @@ LEVELS_16, LEVELS_8 = 65535, 255
 
 @dataclass(frozen=True)
 class Scale:
-    """How a quantity is put on 8 bits: from ``low`` to ``high``, linear or by its logarithm."""
+    """How a quantity is stored in 8 bits: from ``low`` to ``high``, on a linear or logarithmic scale."""
 
     low: float
     high: float
@@ -46,7 +46,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Packed:
-    """Moments in base64, and what is needed to read them."""
+    """Moments in base64, and the numbers needed to read them."""
 
     text: str
     description: dict[str, Any]
@@ -61,7 +61,7 @@ def packed(
         moments: in order of time; none is empty.
         scales: of the quantities, by the names of the fields of a moment.
         boxes: ``(axes, dim)``, which half sizes are kept: a row of weights for each; their product of powers.
-        longest: half side that is the largest, m; longer ones are cut.
+        longest: largest half side that is stored, m; longer ones are cut to it.
     """
     positions = np.concatenate([moment.position for moment in moments]).astype(float)
     lower, upper = positions.min(axis=0), positions.max(axis=0)
@@ -94,7 +94,7 @@ def packed(
 
 
 def _bytes(plane: np.ndarray) -> bytes:
-    """A number of each particle, byte by byte: the lowest of all first."""
+    """One number of each particle, byte by byte: first the lowest bytes of all particles."""
     rows = np.ascontiguousarray(plane.astype(plane.dtype.newbyteorder("<")))
     return np.ascontiguousarray(rows.view(np.uint8).reshape(len(plane), -1).T).tobytes()
 

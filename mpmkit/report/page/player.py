@@ -1,4 +1,4 @@
-"""Section: the flow, played."""
+"""Section: the player of the flow."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ from .walls import walls_of
 from .words import number
 
 NO_WALLS = ("open", "periodic", "symmetry")
-"""Faces of the domain that are none."""
+"""Conditions of faces that are not walls."""
 TRIMMED = 99.5
-"""Percentile of a quantity at which its colours end: a single particle does not set the scale of all."""
+"""Percentile at the end of a colour scale, so that a single particle does not set the scale."""
 DECADES = 1e-3
-"""Least shear rate that has a colour of its own, over the largest."""
+"""Lowest shear rate on the colour scale, relative to the largest."""
 LABELS = {
     "speed": ("Speed", "m/s", "how fast the material moves"),
     "shear_rate": (
         "Shear rate",
         "1/s",
-        "how fast the material is sheared; the scale goes by factors of ten",
+        "how fast the material is sheared; the scale is logarithmic",
     ),
-    "yielded": ("Yielded zone", "", "where the stress is beyond the yield stress, the material flows"),
-    "pressure": ("Pressure", "Pa", "of the material, positive where it is pressed together"),
+    "yielded": ("Yielded zone", "", "the material flows where the stress exceeds the yield stress"),
+    "pressure": ("Pressure", "Pa", "of the material, positive in compression"),
 }
 
 
 def section(source: Source, room: int) -> Section | None:
-    """The player, whose data take up at most about ``room`` letters; None without a flow."""
+    """The player, with at most about ``room`` characters of data; None if the run has no data for it."""
     if not source.moments:
         return Section(
-            "flow", "Flow", note("This run has kept no picture of its flow: set output.report to true.")
+            "flow", "Flow", note("This run has no data for the player: set output.report to true.")
         )
     walls = walls_of(source)
     for_walls = sum(len(text) for wall in walls for shape in wall["shapes"] for text in shape.values())
@@ -68,12 +68,12 @@ def section(source: Source, room: int) -> Section | None:
 
 
 def _boxes(dim: int) -> np.ndarray:
-    """Exponents of the half sides in each size that is kept: both of them, or the mean one of a cuboid."""
+    """Exponents of the half sides in each stored size: both sides in 2-D, their geometric mean in 3-D."""
     return np.eye(2) if dim == 2 else np.full((1, 3), 1 / 3)
 
 
 def _longest(source: Source) -> float:
-    """Half side of the largest box that is drawn, m: a longer one does not say where material is."""
+    """Half side of the largest box that is drawn, m; the ends of a longer box contain no material."""
     drawn = max(float(moment.half_size.max()) for moment in source.moments)
     return min(drawn, source.results.case["grid"]["cell_size"] / 2)
 
@@ -97,14 +97,14 @@ def _scales(source: Source) -> dict[str, Scale]:
 
 
 def _can_yield(source: Source) -> bool:
-    """Whether a law of the case has a yield point; of a case that cannot be read, whether anything rests."""
+    """Whether a law has a yield point; if the case cannot be read, whether any material is at rest."""
     if source.case is None:
         return not all(moment.yielded.all() for moment in source.moments)
     laws = [body.material.constitutive_law for body in source.case.bodies]
     try:
         with blaming_plugins([("law", law) for law in laws]):
             return any(law.yield_point(initial_state(law, 1)) is not None for law in laws)
-    except GuardStop:  # a plug-in at fault is no reason to have no page
+    except GuardStop:  # the page is made even if a plug-in fails
         return False
 
 
@@ -123,7 +123,7 @@ def _quantity(name: str, scale: Scale) -> dict[str, Any]:
 
 
 def _scene(source: Source) -> dict[str, Any]:
-    """The space around the material: faces, planes of symmetry, the part that is looked at."""
+    """The space around the material: faces, planes of symmetry, and the visible part."""
     results, space = source.results, source.space
     grid, axes = results.case["grid"], space.axes
     lower, upper = np.array([grid["domain"][axis] for axis in axes], dtype=float).T
@@ -157,9 +157,7 @@ def _controls(source: Source, quantities: list[str]) -> str:
         f"<span>{escape(LABELS[name][0])}</span></label>"
         for row, name in enumerate(quantities)
     )
-    how = (
-        "Drag to turn. Click and then scroll, or pinch, to come nearer. Arrow keys turn, + and − come nearer."
-    )
+    how = "Drag to turn. To zoom, click and then scroll, or pinch. Arrow keys turn the view; + and − zoom."
     solid = source.space.dim == 3
     stage = "The material in three dimensions" if solid else "Section through the material"
     return (
@@ -182,13 +180,13 @@ def _said(thinned: Thinned, source: Source) -> str:
     """How much of the run the player shows."""
     moments, share = thinned.moments, min(moment.share for moment in thinned.moments)
     said = (
-        f"The player shows {len(moments)} moments of the run; between them the material moves in straight "
+        f"The player shows {len(moments)} moments of the run; between them, particles move along straight "
         "lines."
     )
     if share < 1:
         said += (
-            f" To keep the page small it draws one in {number(1 / share, 2)} particles, each as large as "
-            "those that it stands for; the frames in the directory of the run have all of them."
+            f" To keep the page small, it draws one in {number(1 / share, 2)} particles, enlarged to fill "
+            "the volume of the others; the frames in the directory of the run have all particles."
         )
     if any(plane is not None for plane in _scene(source)["mirrors"]):
         cut = "half of it" if source.space.dim == 2 else "a part of it"

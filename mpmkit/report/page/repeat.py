@@ -1,4 +1,4 @@
-"""Section: how the run was made, and how to make it again."""
+"""Section: how the run was made, and how to repeat it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .section import Section, folded, pairs, paragraph, table
 from .source import START, Source
 
 LONGEST = 100_000
-"""Letters of a case that the page holds at the most."""
+"""Most characters of a case on the page."""
 
 
 def section(source: Source) -> Section:
@@ -22,7 +22,7 @@ def section(source: Source) -> Section:
     if commands:
         body += paragraph("The run was made with")
         body += f'<pre class="command" tabindex="0"><code>{escape(chr(10).join(commands))}</code></pre>'
-    body += paragraph("To repeat it from its directory alone, and compare every bit:")
+    body += paragraph("To repeat it from its directory and compare the results bit by bit:")
     body += '<pre class="command" tabindex="0"><code>mpmkit rerun DIRECTORY</code></pre>'
     facts = [("Versions", ", ".join(f"{name} {version}" for name, version in versions.items()))]
     facts += [(str(name).capitalize(), str(value)) for name, value in machine.items()]
@@ -46,5 +46,5 @@ def section(source: Source) -> Section:
 def _case(source: Source) -> str:
     text = json.dumps(source.results.case, indent=2, ensure_ascii=False)
     if len(text) > LONGEST:
-        return paragraph(f"The case has {len(text)} letters: see case.json in the directory of the run.")
+        return paragraph(f"The case has {len(text)} characters: see case.json in the directory of the run.")
     return f'<pre tabindex="0"><code>{escape(text)}</code></pre>'

@@ -1,4 +1,4 @@
-"""A section of a page: what it shows as HTML, and what its script draws."""
+"""A section of a page: its HTML, and the data that its script draws."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ class Section:
     """A part of a page with a heading of its own."""
 
     name: str
-    """letters and '-'; its id, and where its script finds its data"""
+    """letters and '-'; the id of the section, and the key of its data"""
     title: str
     body: str
     """HTML"""
     data: dict[str, Any] = field(default_factory=dict)
-    """what becomes JSON for its script; no NaN"""
+    """data for its script, written as JSON; without NaN"""
 
 
 def paragraph(text: str, of: str = "") -> str:
@@ -32,7 +32,7 @@ def note(text: str) -> str:
 
 
 def table(headings: Iterable[str], rows: Iterable[Iterable[str]], caption: str) -> str:
-    """A table of plain text that scrolls by itself where it is too wide."""
+    """A table of plain text; it scrolls if it is too wide."""
     head = "".join(f'<th scope="col">{escape(text)}</th>' for text in headings)
     body = "".join(f"<tr>{''.join(_cells(row))}</tr>" for row in rows)
     return (
@@ -48,7 +48,7 @@ def _cells(row: Iterable[str]) -> Iterable[str]:
 
 
 def pairs(rows: Iterable[tuple[str, str]]) -> str:
-    """A list of terms, and what there is to say of each."""
+    """A list of terms with their descriptions."""
     said = "".join(f"<div><dt>{escape(term)}</dt><dd>{escape(text)}</dd></div>" for term, text in rows)
     return f'<dl class="pairs">{said}</dl>'
 
@@ -59,7 +59,7 @@ def bullets(sentences: Iterable[str], of: str = "") -> str:
 
 
 def folded(summary: str, content: str, opened: bool = False) -> str:
-    """HTML that unfolds under a line of plain text."""
+    """HTML that opens with a click on a line of plain text."""
     return (
         f"<details{' open' if opened else ''}><summary>{escape(summary)}</summary>"
         f'<div class="folded">{content}</div></details>'
@@ -67,13 +67,13 @@ def folded(summary: str, content: str, opened: bool = False) -> str:
 
 
 def charts(names: Mapping[str, str]) -> str:
-    """Where the script puts charts, side by side where there is room; labels are for screen readers."""
+    """Places of charts, side by side if there is room; the labels are for screen readers."""
     places = "".join(chart_place(name, label) for name, label in names.items())
     return f'<div class="charts">{places}</div>' if places else ""
 
 
 def chart_place(name: str, label: str) -> str:
-    """Where the script puts the chart ``name``; the label is for who cannot see it."""
+    """Place of the chart ``name``; the label is for screen readers."""
     return f'<figure class="chart" data-chart="{escape(name)}" aria-label="{escape(label)}"></figure>'
 
 

@@ -1,4 +1,4 @@
-"""What a page is made of, read from the directory of a run, which may still be at work."""
+"""The data of a page, read from the directory of a run that may still be in progress."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..run_results import RunResults
 
 LINE = re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d+ (?P<level>[A-Z]+) +(?P<said>.*)$")
 START = "command: "
-"""How the log of every start of a run begins."""
+"""First line of the log of every start of a run."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +36,19 @@ class Said:
 
 @dataclass(frozen=True)
 class Source:
-    """A run as its page sees it."""
+    """The data of a run that its page shows."""
 
     results: RunResults
     moments: list[Moment]
     """of the flow, in order of time, with the particles that can be drawn"""
     log: list[Said]
     case: Case | None
-    """None where it cannot be read here, as where a plug-in is not installed"""
+    """None if it cannot be read here, for example if a plug-in is not installed"""
     directory: Path
 
     @property
     def running(self) -> bool:
-        """Whether the run has not come to its end yet."""
+        """Whether the run is still in progress."""
         return not self.results.summary
 
     @property
@@ -57,16 +57,16 @@ class Source:
 
     @cached_property
     def last_start(self) -> list[Said]:
-        """The log from the last start of the run on: a run that goes on says all again."""
+        """The log since the last start of the run: a continued run writes all its messages again."""
         starts = [row for row, said in enumerate(self.log) if said.text.startswith(START)]
         return self.log[starts[-1] :] if starts else self.log
 
 
 def read_source(directory: Path) -> Source:
-    """Read what there is of a run.
+    """Read the files of a run.
 
     Raises:
-        CaseError: there is no run, or not even its first row.
+        CaseError: there is no run, or its history has no row.
     """
     run = RunDirectory(directory)
     try:
@@ -83,7 +83,7 @@ def read_source(directory: Path) -> Source:
 
 
 def _moments_of_frames(results: RunResults) -> list[Moment]:
-    """The flow of a run that has kept none for its page: what its frames show."""
+    """The flow from the frames, for a run that saved no data for the player."""
     dim = SPACES[results.case["space"]].dim
     found = []
     for time, path in results.frames:
@@ -98,7 +98,7 @@ def _moments_of_frames(results: RunResults) -> list[Moment]:
 
 
 def _drawable(moment: Moment, results: RunResults) -> Moment:
-    """What is finite and in the domain: a guard has stopped the run of the rest."""
+    """The particles that are finite and in the domain; the others made a guard stop the run."""
     position = np.zeros((len(moment), 3))
     position[:, : moment.position.shape[1]] = moment.position
     kept = inside(results, position) & np.isfinite(moment.half_size).all(axis=1)
@@ -112,7 +112,7 @@ def _read_log(path: Path) -> list[Said]:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return []
-    found = [LINE.match(line) for line in lines]  # what does not match is a part of a traceback
+    found = [LINE.match(line) for line in lines]  # lines of a traceback do not match
     return [Said(match["level"], match["said"]) for match in found if match]
 
 

@@ -1,4 +1,4 @@
-"""Fewer particles and fewer moments, where a page would be too large with all of them."""
+"""Fewer particles and moments, if a page with all of them would be too large."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .packing import Packed
 
 FEWEST_PARTICLES, FEWEST_MOMENTS = 2500, 12
 MARGIN = 0.93
-"""Part of the room that is aimed at: what is packed does not shrink quite as what goes into it."""
+"""Part of the room to aim at: the packed size falls a little less than the number of particles."""
 ODD = (2**0.5 - 1) * 2
-"""Spreads numbers evenly, in another order than the golden ratio that the run has chosen by."""
+"""Irrational factor that selects particles evenly; the run itself selects by the golden ratio."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Thinned:
 
 
 def fitting(moments: Sequence[Moment], pack: Callable[[Sequence[Moment]], Packed], room: int) -> Thinned:
-    """As many particles and moments as take up at most ``room`` letters; the last moment always stays.
+    """Select particles and moments so that they need at most ``room`` characters; the last moment is kept.
 
-    Particles go first, down to ``FEWEST_PARTICLES`` at a time, and then moments.
+    First particles are left out, down to ``FEWEST_PARTICLES`` in each moment, and then moments.
     """
     kept, share = list(moments), 1.0
     while True:

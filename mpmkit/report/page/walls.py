@@ -1,4 +1,4 @@
-"""The walls of a scene as the player draws them: each as it was drawn once, and its place at every moment."""
+"""The walls of a scene for the player: one drawing of each wall, and its position at every moment."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ...registry.blame import blaming_plugins
 from .source import Source
 
 MOST_PARTS = 12_000
-"""Triangles or segments of all drawings on the page, about, at the most."""
+"""Approximate largest number of triangles or segments of all drawings on the page."""
 LOOKS = 6
-"""Drawings of a wall that moves as a whole among which the most complete is looked for."""
+"""Number of drawings of a rigid wall among which the most complete one is chosen."""
 NOT_THERE = -1
 
 
 def walls_of(source: Source) -> list[dict[str, Any]]:
-    """For each wall its drawings, and for each moment which of them is seen, how turned and how shifted."""
+    """For each wall its drawings, and for each moment the visible drawing with its rotation and shift."""
     names = dict.fromkeys(name for walls in source.results.walls.values() for name in walls)
     found, most = [], MOST_PARTS // max(1, len(names))
     for name in names:
@@ -35,7 +35,7 @@ def walls_of(source: Source) -> list[dict[str, Any]]:
 
 
 def _moving(source: Source, name: str, files: dict[float, Path], most: int) -> tuple[list, list] | None:
-    """Of a wall whose motion is the framework's: one drawing, and its motion; None of any other."""
+    """For a wall that uses the framework's motion: one drawing and its positions; None for any other wall."""
     case, dim = source.case, source.space.dim
     wall = None if case is None else case.walls.get(name)
     if case is None or wall is None:
@@ -57,7 +57,7 @@ def _moving(source: Source, name: str, files: dict[float, Path], most: int) -> t
         poses = [(eye, origin[0])] * len(source.moments)
     else:
         points = motion.back(points, time)
-        # x = Q (X - b), where b is what comes back from the origin, since X = Qᵀ x + b.
+        # From X = Qᵀ x + b follows x = Q (X - b); motion.back of the origin gives b.
         turns = [motion.turned(eye, moment.time).T for moment in source.moments]
         poses = [
             (turn, -turn @ motion.back(origin, moment.time)[0])
@@ -68,14 +68,14 @@ def _moving(source: Source, name: str, files: dict[float, Path], most: int) -> t
 
 
 def _some(files: dict[float, Path]) -> list[tuple[float, Path]]:
-    """A few of the drawings, each file once."""
+    """A few of the drawings; each file is read once."""
     once = {path: time for time, path in reversed(files.items())}
     listed = [(time, path) for path, time in once.items()]
     return listed[:: max(1, len(listed) // LOOKS)]
 
 
 def _as_drawn(source: Source, files: dict[float, Path], most: int) -> tuple[list, list]:
-    """Of any other wall: its drawing at the frame before."""
+    """For any other wall: its drawing at the last frame before each moment."""
     paths = list(dict.fromkeys(files.values()))
     shapes = [_shape(*_drawn(path, source.space.dim), most // len(paths)) for path in paths]
     frames = sorted(source.results.walls)
@@ -104,7 +104,7 @@ def _shape(points: np.ndarray, parts: np.ndarray, most: int) -> dict[str, str]:
 
 
 def _coarser(points: np.ndarray, parts: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """The drawing with points that are near each other made one, until it has few enough parts."""
+    """The drawing with points that are close together merged, until it has few enough parts."""
     extent = np.ptp(points, axis=0).max()
     cells = 256
     while len(parts) > most and cells > 4:

@@ -1,4 +1,4 @@
-"""Numbers in words: as many digits as a reader can use, and the unit."""
+"""Numbers as text: with a useful number of digits, and the unit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ MINUTE, HOUR = 60.0, 3600.0
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number with about so many digits, without an exponent where it can be read without."""
+    """A number with about ``digits`` digits; with an exponent only if it is very large or very small."""
     if not math.isfinite(value):
         return "–"
     if value == 0:
@@ -27,7 +27,7 @@ def count(value: float) -> str:
 
 
 def given(value: float) -> str:
-    """A number as somebody has given it."""
+    """A number as it was given."""
     return f"{value:.6g}"
 
 

@@ -1,4 +1,4 @@
-"""What a redistribution works on: lattices and cells over the material, sizes and places of particles."""
+"""Data for a redistribution: lattices and cells over the material, sizes and positions of particles."""
 
 from .stage import Stage, redistributes
 

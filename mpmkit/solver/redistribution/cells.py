@@ -1,4 +1,4 @@
-"""The cells of the grid over the material, and what of each particle's box lies in them."""
+"""The cells of the grid over the material, and the part of each particle's box in them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .mirrored import Mirrored, require_field
 
 
 class BoxCells:
-    """The contract ``Cells`` made real; what reaches over a wall counts to the cell in front of it.
+    """Implements the contract ``Cells``; the part of a box behind a wall counts to the cell in front of it.
 
     Args:
         block: the cells.

@@ -13,7 +13,7 @@ from .mirrored import Mirrored, require_field
 
 
 class SplineLattice:
-    """The contract ``Lattice`` made real; the splines are those of the positions at which it was made.
+    """Implements the contract ``Lattice``; the splines use the positions at the time of its creation.
 
     Args:
         block: its nodes.
@@ -81,7 +81,7 @@ class SplineLattice:
         return self._base.shape[1]
 
     def _sums(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Σ w N and Σ w N f of every node, ``(nodes, 2)``, with what lies on ghosts folded in."""
+        """Σ w N and Σ w N f of every node, ``(nodes, 2)``, with the sums on ghosts folded in."""
         block, pairs = self.block, self.block.empty(PAIR)
         scatter_pairs(self._dim, SUPPORT)(
             pairs, block.strides, block.lower, self._tasks, self._base, self._weight, weight, values

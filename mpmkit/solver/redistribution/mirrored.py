@@ -16,11 +16,11 @@ from ..grid import Grid, Span, Window
 from ..walls import Room
 
 LEAST_ROOM = 0.15
-"""Part of its room that a wall must leave a node, so that what is there tells how crowded it is."""
+"""Crowding is computed only at nodes with at least this part of their volume in front of walls."""
 LEAST_WEIGHT = 0.1
-"""Least weight of the nodes around an image that are in front of all walls; below it, there is no image."""
+"""An image is used only if the nodes around it in front of all walls have at least this weight."""
 PADDING = 2
-"""Nodes behind the last along the last axis: rows of pairs are as wide as a vector."""
+"""Extra nodes at the end of the last axis, for vector loads of rows of pairs."""
 
 
 def require_field(values: Any, count: int, of: str) -> None:
@@ -33,16 +33,16 @@ def require_field(values: Any, count: int, of: str) -> None:
 
 
 class Mirrored:
-    """The block that a window covers, ``times`` as fine as the grid.
+    """The block that a window covers, finer than the grid by the factor ``times``.
 
     Args:
-        grid: its faces say what lies behind them: the image at a wall, the other end of a period.
-        window: the nodes that particles can touch, or what they span.
-        times: nodes of the block a cell.
-        centred: whether it holds the cells and not the nodes between them.
+        grid: its faces define the values behind them: the image at a wall, the other end of a period.
+        window: the nodes that particles can touch, or the range that they span.
+        times: nodes of the block per cell.
+        centred: whether its points are cell centres instead of nodes.
 
     Attributes:
-        room: size of what belongs to each node or cell, m² or m³, ``(count,)``: half of it at a wall.
+        room: area or volume of each node or cell, m² or m³, ``(count,)``; half as large at a wall.
     """
 
     def __init__(self, grid: Grid, window: Window | Span, times: int, centred: bool) -> None:
@@ -68,15 +68,15 @@ class Mirrored:
         self._image, self._weight = np.zeros((0, 1), dtype=np.int64), np.zeros((0, 1))
 
     def places(self) -> np.ndarray:
-        """Where the nodes or cells are, m, in the scene, ``(count, dim)``."""
+        """Positions of the nodes or cells in the scene, m, ``(count, dim)``."""
         index = np.indices(self.shape).reshape(self.grid.dim, -1).T + self.lower
         return self.grid.lower + (index + (0.5 if self.centred else 0.0)) * self.spacing
 
     def leave(self, room: Room) -> None:
-        """Leave each only the part of its room that walls leave which are no faces.
+        """Reduce the volume of each point by the part behind walls that are not faces.
 
-        What is behind such a wall is mirrored as at a face. An image lies between nodes: what is behind is
-        shared among those around its image, by their linear weights, and what is filled back is their mean.
+        Values behind such a wall are mirrored as at a face. An image lies between nodes: the value behind the
+        wall is distributed to the nodes around its image by linear weights, and their mean is filled back.
         """
         self._mirror(room)
         left = self._whole * room.part
@@ -85,7 +85,7 @@ class Mirrored:
         self.room = np.maximum(left, LEAST_ROOM * self._whole)
 
     def _mirror(self, room: Room) -> None:
-        """Find the nodes around the image of each node behind a wall; those behind a wall have no weight."""
+        """Find the nodes around the image of each node behind a wall; nodes behind a wall get no weight."""
         dim = self.grid.dim
         behind = np.flatnonzero(room.behind)
         place = (room.image[behind] - self.grid.lower) / self.spacing - (0.5 if self.centred else 0.0)
@@ -103,7 +103,7 @@ class Mirrored:
         self._image, self._weight = index[seen], weight[seen] / total[seen, None]
 
     def _fold_walls(self, values: np.ndarray) -> None:
-        """Share what lies behind the walls among the nodes around its image, in place."""
+        """Distribute the values behind the walls to the nodes around their images, in place."""
         if len(self._behind):
             kept = values[self._behind]
             values[self._behind] = 0.0
@@ -112,31 +112,31 @@ class Mirrored:
         values[self._blind] = 0.0
 
     def _fill_walls(self, values: np.ndarray) -> None:
-        """Give what lies behind the walls the mean of the nodes around its image, in place."""
+        """Set the values behind the walls to the mean of the nodes around their images, in place."""
         if len(self._behind):
             width = (1,) * (values.ndim - 1)
             weight = self._weight.reshape(*self._weight.shape, *width)
             values[self._behind] = (weight * values[self._image]).sum(axis=1)
 
     def crowded(self, sums: np.ndarray) -> np.ndarray:
-        """Folded sums over the room, ``(count,)``; one where walls leave too little room to tell."""
+        """Folded sums over the volumes, ``(count,)``; 1 if walls leave too little volume."""
         crowded = sums / self.room
         crowded[self._hidden] = 1.0
         return crowded
 
     def empty(self, width: int = 1) -> np.ndarray:
-        """Zeros, ``(count, width)``, with room behind them for a row of pairs."""
+        """Zeros, ``(count, width)``, with extra memory at the end for a row of pairs."""
         return np.zeros(self.count * width + LANES)[: self.count * width].reshape(self.count, width)
 
     def field(self, values: np.ndarray) -> np.ndarray:
-        """Values of the nodes with room behind them, ``(count, 1)``, for the kernels that gather."""
+        """Values of the nodes, ``(count, 1)``, with extra memory at the end, for the kernels that gather."""
         require_field(values, self.count, "nodes or cells of the lattice")
         field = self.empty()
         field[:, 0] = values
         return field
 
     def fold(self, values: np.ndarray) -> None:
-        """Add what lies behind the faces and the walls to its images, in place; it is zero afterwards.
+        """Add the values behind the faces and the walls to their images, in place, and set them to zero.
 
         Args:
             values: ``(count,)`` or ``(count, width)``.
@@ -148,7 +148,7 @@ class Mirrored:
         self._fold_walls(values)
 
     def fill(self, values: np.ndarray) -> None:
-        """Copy the images to what lies behind the faces and the walls, in place."""
+        """Copy the images to the points behind the faces and the walls, in place."""
         self._fill_walls(values)
         block = self._block(values)
         for ghost, image in reversed(self._ghosts):
@@ -178,11 +178,11 @@ class Mirrored:
         return own.ravel()
 
     def least_around(self, values: np.ndarray) -> np.ndarray:
-        """The least of each and all its neighbours, corners included; what is not stored counts 0."""
+        """The minimum of each point and all its neighbours, corners included; 0 for points not stored."""
         return self._least(neighbours.least_around, values)
 
     def least_beside(self, values: np.ndarray) -> np.ndarray:
-        """The least of each and those that share a face with it."""
+        """The minimum of each point and its neighbours along the axes."""
         return self._least(neighbours.least_beside, values)
 
     def _least(self, kernel: Callable[[np.ndarray, np.ndarray], None], values: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The particles of a scene as a redistribution works on them, and when it does."""
+"""The particles of a scene for a redistribution, and the times when it acts."""
 
 from __future__ import annotations
 
@@ -23,32 +23,33 @@ from .lattice import SplineLattice
 from .mirrored import Mirrored
 
 OVER_MEAN = 2.0
-"""Largest shear rate that counts, over the largest mean since the last redistribution: that at the end of a
-flow which has grown evenly from nothing. In an impact after a flight it would be hundreds."""
+"""The shear rate is limited to this multiple of the largest mean rate since the last redistribution. A flow
+that grows linearly from rest reaches this ratio; an impact after a free flight would reach hundreds."""
 AT_A_WALL = 1e-6
 """Distance, in cells, that a shift keeps from a wall."""
 
 
 def redistributes(author: contract.Redistribution) -> bool:
-    """Whether a redistribution can ever be due: one whose ``is_due`` is that of the contract never is."""
+    """Whether a redistribution can ever be due; one that does not override ``is_due`` never is."""
     return type(author).is_due is not contract.Redistribution.is_due
 
 
 class Stage:
-    """The contract ``Redistributing`` made real, for the fluids of one scene.
+    """Implements the contract ``Redistributing`` for the fluids of one scene.
 
-    Solids keep their boxes and places; they take room like everything else. What the redistribution hands in
-    is checked here: PluginFault if it has the wrong shape, or is not finite.
+    Solids keep their boxes and positions; their volume counts in the crowding. Arrays from the redistribution
+    are checked here: PluginFault if one has the wrong shape, or is not finite.
 
     Attributes:
-        acts: whether the redistribution can ever be due; otherwise nothing is added up for it.
+        acts: whether the redistribution can ever be due; otherwise shear is not summed up.
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
         time: s, since then.
-        energy: J, that all redistributions so far have put in, or taken where it is negative: the sum of the
-            changes, over each, of kinetic, strain, compressive and potential energy. Potential energy is that
-            of the history: along a periodic axis there is none.
-        momentum: N s, ``(dim,)``, that they have put in. A shift keeps it but for rounding, and at walls that
-            move.
+        energy: J, energy added by all redistributions so far (negative: removed). It is the sum of the
+            changes
+        of kinetic, strain, compressive and potential energy. Potential energy is that of the history: it has
+        no part along a periodic axis.
+        momentum: N s, ``(dim,)``, momentum added by them. Shifts conserve momentum up to rounding, except at
+        moving walls.
     """
 
     nodes: contract.Lattice
@@ -83,18 +84,18 @@ class Stage:
         self._blocks = {}
 
     def _typical_spacing(self) -> float:
-        """m, from particle to particle: that of most of them."""
+        """m, typical distance between particles."""
         return float(np.median(self._sizes())) ** (1 / self._grid.dim)
 
     def _sizes(self) -> np.ndarray:
-        """Volumes; in axisymmetric scenes areas, so that nothing is special at the axis; ``(n,)``."""
+        """Volumes, ``(n,)``; in axisymmetric scenes areas, so that the axis needs no special treatment."""
         p = self._particles
         return p.volume / (2 * np.pi * p.position[:, 0]) if self._radial else p.volume
 
     # --- Every step
 
     def follow(self, dt: float) -> None:
-        """Boxes of fluids hold their volume if they are to have equal sides; shear is added up."""
+        """Adjust boxes of fluids to their volume if boxes have equal sides, and sum up the shear."""
         most = 0.0
         if self.redistribution.equal_boxes:
             most = max(map(self._hold_volume, self._fluids()), default=0.0)
@@ -106,7 +107,7 @@ class Stage:
             self.time += dt
 
     def _hold_volume(self, part: slice) -> float:
-        """Boxes of a fluid hold its volume; returns its largest shear rate, 1/s."""
+        """Adjust boxes of a fluid to their volume; return its largest shear rate, 1/s."""
         p = self._particles
         largest = np.empty(chunk_count(part.stop - part.start))
         domains.hold_volume(
@@ -116,7 +117,7 @@ class Stage:
         return float(largest.max(initial=0.0))
 
     def redistribute_if_due(self, window: Window, sorting: Sorting) -> bool:
-        """Redistribute if so much shear has come together; whether it did. Particles must be sorted."""
+        """Redistribute if the summed shear requires it; return whether it did. Particles must be sorted."""
         author = self.redistribution
         if not self.acts or not audit.require_truth(author, "is_due", author.is_due(self.shear)):
             return False
@@ -159,7 +160,7 @@ class Stage:
         return self._blocks[key]
 
     def _leave_room(self, block: Mirrored) -> None:
-        """Tell a block what part of its room the walls leave that are no faces of the grid."""
+        """Reduce the volumes of a block by the parts behind walls that are not faces of the grid."""
         if len(self._walls):
             block.leave(self._walls.room(block.places(), block.spacing, block.centred))
 
@@ -197,12 +198,12 @@ class Stage:
         if p.affine.shape[1]:
             for axis in range(p.dim):
                 along = np.ascontiguousarray(change[:, axis])
-                # What a node gains is taken from all around it, so that no momentum is made.
+                # Momentum added to a node is taken from its neighbours, so that the sum is conserved.
                 taken = self._splines.at_particles(self._splines.average(along, p.mass))
                 p.velocity[:, axis] += along - taken
 
     def _kept_from_walls(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest places, m, along each axis; infinite where there is no wall."""
+        """Lowest and highest positions, m, along each axis; infinite if there is no wall."""
         grid, margin = self._grid, AT_A_WALL * self._grid.cell_size
         walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
         return np.where(walls[:, 0], margin, -np.inf), np.where(walls[:, 1], grid.extent - margin, np.inf)
@@ -217,7 +218,7 @@ class Stage:
             self._particles.quadrature[part] = factor[part]
 
     def _require(self, given: np.ndarray, what: str, shape: tuple[int, ...]) -> None:
-        """Raise PluginFault unless what the redistribution gave are finite numbers in this shape."""
+        """Raise PluginFault unless the array from the redistribution has this shape and finite numbers."""
         p, author = self._particles, self.redistribution
         whole = isinstance(given, np.ndarray) and given.dtype.kind != "f"
         found = audit.described(given) + (f" of {given.dtype}" if whole else "")

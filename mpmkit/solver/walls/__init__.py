@@ -1,4 +1,4 @@
-"""Walls that stand anywhere and move: where they meet the grid, and what they do to its nodes."""
+"""Walls at any position, also moving: their nodes on the grid, and their action on these nodes."""
 
 from .faces import Faces
 from .walls import Room, Walls

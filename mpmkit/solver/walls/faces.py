@@ -1,4 +1,4 @@
-"""The faces of the grid as walls: what they have given to the material."""
+"""The faces of the grid as walls: sums of their impulses on the material."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Faces:
     """Sums of the impulses that each face gives, see ``kernels.face_impulses``.
 
     Attributes:
-        sums: ``(2 dim, …)``, what each face has given so far, lower before upper, axis by axis: impulse, N s,
+        sums: ``(2 dim, …)``, sums of each face so far, lower before upper, axis by axis: impulse, N s,
             ``(dim,)``, its moment about the origin of the scene, N m s, ``(3,)`` or ``(1,)`` about the axis
             out of the plane, and work, J, which is zero. A plane of symmetry counts as well, the axis too.
-        mapped: the same of the last mapping alone, of which a part reaches the particles.
+        mapped: the same for the last mapping only; a part of it reaches the particles.
     """
 
     def __init__(self, grid: Grid) -> None:
@@ -31,12 +31,12 @@ class Faces:
         return plain_state(self, but=("_are_walls",))
 
     def restore(self, state: State) -> None:
-        """Take its sums back."""
+        """Restore its sums."""
         restore_plain(self, state)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the faces that are walls, as ``grid.faces`` names them."""
+        """Names of the faces that are walls, as in ``grid.faces``."""
         of_all = [f"{axis}_{side}" for axis in self.grid.axes for side in ("min", "max")]
         return tuple(name for name, is_wall in zip(of_all, self._are_walls, strict=True) if is_wall)
 
@@ -45,7 +45,7 @@ class Faces:
         return self.sums[self._are_walls]
 
     def given(self, solved: bool) -> np.ndarray:
-        """The sums to which impulses count, in mapping, or by the momentum equation once ``solved``."""
+        """The sums for impulses: of the mapping, or of the momentum equation if ``solved``."""
         return self.sums if solved else self.mapped
 
     def fill(self, window: Window, active: ActiveNodes, dt: float | None) -> None:

@@ -1,4 +1,4 @@
-"""A wall of a scene, or a part of one: the nodes at which it acts, and what it has given to the material."""
+"""A wall of a scene, or a part of one: the nodes at which it acts, and its impulses on the material."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from ..stateful import State, plain_state, restore_plain
 from .wall_nodes import LAG, MARGIN, WallNodes
 
 SWEEPS = 3
-"""Turns, to and fro, in which the impulses at neighbouring places are brought together; an odd number, so
-that with the first one forwards the whole reads the same from both ends."""
+"""Sweeps, alternately forwards and backwards, that couple the impulses at neighbouring nodes. The number is
+odd, so that the sequence is symmetric."""
 
 
 class Wall:
-    """A surface with a contact, on the nodes of a window. Lengths are in cells, but for places.
+    """A surface with a contact, on the nodes of a window. Lengths are in cells, positions in m.
 
     Attributes:
         touches: how many particles touch it in this step.
-        sums: what the wall has given to the material so far: impulse, N s, ``(dim,)``, its moment about the
+        sums: sums of the action on the material so far: impulse, N s, ``(dim,)``, its moment about the
             origin of the scene, N m s, ``(3,)`` or ``(1,)`` about the axis out of the plane, and work, J.
     """
 
@@ -47,25 +47,25 @@ class Wall:
 
     @property
     def is_near(self) -> bool:
-        """Whether any node that particles can reach is near it: no other wall costs anything in a step."""
+        """Whether any node that particles can reach is near it; other walls cost nothing in a step."""
         return len(self.near.at) > 0
 
     def state(self) -> State:
-        """What it has given, where it was looked for, and what its contact remembers at the nodes."""
+        """Its sums, its last searched position, and the memory of its contact at the nodes."""
         kept = plain_state(self, but=("odd", "pulls", "_near", "_acting", "_after"))
         if self._near is not None:
             kept |= {f"memory/{name}": array for name, array in self._near.memory.items()}
         return kept
 
     def restore(self, state: State) -> None:
-        """Take back a state; ``lay`` must follow."""
+        """Restore a state; call ``lay`` afterwards."""
         restore_plain(self, state)
         self._near = None
 
     # --- Where it is
 
     def lay(self, window: Window, active: np.ndarray, state: State | None = None) -> None:
-        """Go over to a window that has been laid anew, or back to one in which the wall had a state."""
+        """Switch to a new window, or back to one in which the wall had a state."""
         before, self._near = self._near, WallNodes(self.contact, self.grid, window, active)
         self._acting, self._after = np.zeros(0, dtype=np.int64), np.zeros((0, self.grid.dim))
         if state is not None:
@@ -80,7 +80,7 @@ class Wall:
             self._near.take_memory(before)
 
     def move_to(self, time: float) -> None:
-        """Be where it is at a time, s."""
+        """Move to the position at a time, s."""
         there, self._there = self._there, self.surface.present(time)
         moved = self.surface.fastest(self._time, time) * (time - self._time) / self.grid.cell_size
         self._moved += moved
@@ -104,14 +104,14 @@ class Wall:
         self.near.sort(self.surface, time)
 
     def seen_from(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Distance, m, ``(n,)``, and normal, ``(n, dim)``, at places, m, where it was last; None where it is
-        not there."""
+        """Distance, m, ``(n,)``, and normal, ``(n, dim)``, of its last position at points, m; None if it is
+        not present."""
         return self.surface.distance(places, self._time) if self._there else None
 
     # --- What it does
 
     def keep_out(self, position: np.ndarray) -> None:
-        """Put particles that have come into it back to its surface."""
+        """Move particles inside the wall back to its surface."""
         if self._there and self.is_near:
             w = self.near
             wall_reach.keep_out(position, self.grid.cell_size, w.lower, w.strides, w.dense)
@@ -133,7 +133,7 @@ class Wall:
             w.forget()
 
     def fold(self, momentum: bool, forces: bool) -> None:
-        """Fold what lies on its ghosts."""
+        """Fold the values on its ghosts."""
         if not self.touches:
             return
         w = self.near
@@ -143,7 +143,8 @@ class Wall:
         )  # fmt: skip
 
     def act(self, rehearse: bool, dt: float | None) -> None:
-        """Let the contact act on the velocities as mapped, or as solved in a step of ``dt`` s.
+        """Apply the contact to the velocities after mapping, or after the momentum equation in a step of
+        ``dt`` s.
 
         Other walls may push the same nodes: ``sweep`` and ``count`` follow.
         """
@@ -166,13 +167,13 @@ class Wall:
         self._give(before, self._after, dt is not None)
 
     def sweep(self, backwards: bool, solved: bool) -> None:
-        """Bring what it holds to the velocities that the contact gave, after others have pushed the nodes."""
+        """Restore the contact velocities at its nodes after other walls have pushed them."""
         self._sweep(self._after, backwards, solved)
 
     def count(self, solved: bool, of_faces: np.ndarray) -> None:
-        """Add up what it has given at the nodes.
+        """Sum up its impulses at the nodes.
 
-        ``of_faces`` gets what the faces of the grid give at nodes that they hold against it.
+        ``of_faces`` gets the impulses of the faces of the grid at nodes that they hold against it.
         """
         w, sums = self.near, self.sums
         if not solved:
@@ -194,16 +195,16 @@ class Wall:
 
     def _sweep(self, after: np.ndarray, backwards: bool, solved: bool) -> None:
         w = self.near
-        pulls = self.pulls or not solved  # until the next decision, what is in contact is held
+        pulls = self.pulls or not solved  # nodes in contact are held until the next decision
         wall_contact.sweep(
             w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, after,
             self.odd, pulls, backwards, solved, w.given, w.held_at,
         )  # fmt: skip
 
     def _shared(self, acting: np.ndarray, velocity: np.ndarray, touched: np.ndarray) -> np.ndarray:
-        """What neighbours add to the push of each place by itself, N s, ``(k,)``: they push the same nodes.
+        """Contribution of neighbours to the impulse at each point, N s, ``(k,)``: they push the same nodes.
 
-        It is tried out: the nodes are as they were afterwards.
+        It is found by a trial; the nodes are restored afterwards.
         """
         w, normal = self.near, self.near.normal[acting]
         rows = np.unique(np.concatenate([w.at[acting], w.index[acting].ravel()]))
@@ -223,7 +224,7 @@ class Wall:
         return (impulse * normal).sum(axis=1) - alone
 
     def _pressed(self, acting: np.ndarray, touched: np.ndarray, dt: float | None) -> np.ndarray:
-        """Push, N s, ``(k,)``, that comes from what is mirrored beyond the wall, and from neighbours."""
+        """Impulse, N s, ``(k,)``, from the mirrored material behind the wall, and from neighbours."""
         if dt is None or not self.contact.counts_push:
             return np.zeros(len(acting))
         velocity = self.near.velocity[: len(acting)]
@@ -251,7 +252,7 @@ class Wall:
         )
 
     def fill(self, dt: float | None) -> None:
-        """Fill its ghosts with velocities as mapped, or as solved in a step of ``dt`` s."""
+        """Fill its ghosts with velocities after mapping, or after the momentum equation (step ``dt``)."""
         if not self.touches:
             return
         w = self.near

@@ -14,22 +14,22 @@ from ...registry import audit
 from ..grid import Grid, Window
 
 LAG = 0.02
-"""Cells that a wall may move before the nodes are sorted anew; its velocity is that of the moment."""
+"""Cells that a wall may move before its nodes are classified again; its velocity is always current."""
 UP, STANDS, FACING = 2.0, 1e-3, 0.9
 """Cells from a face at which a wall that stands on it is looked at; cells from the face up to which it stands
 there; and cosine of the angle between its normal and that of the face from which the two are against each
 other."""
 MARGIN = 1.0
-"""Cells that a wall may move before the nodes near it are looked for anew."""
+"""Cells that a wall may move before the nodes near it are searched again."""
 
 
 class WallNodes:
-    """The nodes of one window near one wall, and what it needs of them. Lengths are in cells, places in m."""
+    """The nodes of one window near one wall, and the data for them. Lengths are in cells, positions in m."""
 
     def __init__(self, contact: Contact, grid: Grid, window: Window, active: np.ndarray) -> None:
         """
         Args:
-            contact: for what it remembers.
+            contact: the contact, for its memory.
             grid, window: the nodes.
             active: (nodes,) of the window, whether particles can reach a node, uint8.
         """
@@ -40,7 +40,7 @@ class WallNodes:
         self.strides = np.array(window.strides)
         number = np.indices(window.shape[:dim]).reshape(dim, -1).T + window.lower
         self.numbers = np.ascontiguousarray(number)
-        # What lies behind a plane of symmetry or beyond a period is seen at its image.
+        # For nodes behind a plane of symmetry or beyond a period, use the position of the image.
         places = np.where(grid.periodic, np.mod(number, grid.cells), number)
         if grid.radial:
             places[:, 0] = np.abs(places[:, 0])
@@ -59,7 +59,7 @@ class WallNodes:
         self.found = self.sorted = False
 
     def take_memory(self, before: WallNodes) -> None:
-        """What the contact remembers at nodes that were in the window before."""
+        """The memory of the contact at nodes that were in the window before."""
         low = np.maximum(before.lower, self.lower)
         shapes = [layout.window_shape for layout in (before, self)]
         high = np.minimum(before.lower + shapes[0], self.lower + shapes[1])
@@ -95,7 +95,7 @@ class WallNodes:
         self.found, self.sorted = True, False
 
     def sort(self, surface: audit.AuditedSurface, time: float) -> None:
-        """Tell the nodes at the wall, the ghosts, and the nodes around the image of each."""
+        """Find the nodes at the wall, the ghosts, and the nodes around the image of each ghost."""
         distance, self.normal = self._clear_of_faces(surface, time, *surface.distance(self.place, time))
         if self.grid.radial:  # a node behind the axis sees the image of the wall
             self.normal[self.number[:, 0] < 0, 0] *= -1.0
@@ -119,10 +119,10 @@ class WallNodes:
     def _clear_of_faces(
         self, surface: audit.AuditedSurface, time: float, distance: np.ndarray, normal: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Distances and normals, with nothing of the part of a wall that stands on a face of the grid.
+        """Distances and normals, without the part of a wall that lies on a face of the grid.
 
-        No material is between the two: a node there is behind the side of the wall. It sees the side as it is
-        ``UP`` cells away from the face, continued to it as a plane.
+        There is no material between the two: a node there is behind the side of the wall. For this node, the
+        side at ``UP`` cells from the face is extended to the face as a plane.
         """
         grid, distance, normal = self.grid, distance.copy(), normal.copy()
         up = UP * grid.cell_size
@@ -144,7 +144,7 @@ class WallNodes:
         return distance, normal
 
     def _find_covered(self) -> None:
-        """Find the nodes on faces of the grid that the wall has come over: it is before them, or on them."""
+        """Find the nodes on faces of the grid that the wall covers: it is in front of them, or on them."""
         index, bits = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
         for axis in range(self.grid.dim):
             for side, inward in enumerate((1.0, -1.0)):
@@ -155,20 +155,20 @@ class WallNodes:
         self.covered, self._covered_bits = np.concatenate(index), np.concatenate(bits)
 
     def take_from_faces(self) -> None:
-        """Make the faces let go of the nodes that the wall has come over: it is what the material meets."""
+        """Release the nodes that the wall covers from the faces: there, the material touches the wall."""
         if len(self.covered):
             contact = self.window.nodes[self.covered, CONTACT].astype(np.int64)
             self.window.nodes[self.covered, CONTACT] = contact & ~self._covered_bits
 
     def pressed(self, acting: np.ndarray, dt: float) -> np.ndarray:
-        """Impulse along the normal that ghosts give to nodes at the wall, N s; below 0 where they take it."""
+        """Normal impulse of ghosts on nodes at the wall, N s; negative if it pulls."""
         ghosts.press(self.ghosts, self.normal, self.foot, self.foot_weight, self.held, dt, self._pressed)
         found = self._pressed[self.at[acting]]
         self._pressed[self.at] = 0.0
         return found
 
     def speed(self, surface: audit.AuditedSurface, time: float) -> None:
-        """Take the velocity of the wall at a time, s."""
+        """Set the velocity of the wall to that at a time, s."""
         self.wall_velocity = surface.velocity(self.place, time)
         if self.grid.radial:
             self.wall_velocity[self.number[:, 0] < 0, 0] *= -1.0
@@ -178,19 +178,19 @@ class WallNodes:
         wall_contact.find_free_axes(self.window.nodes, self.at, self.faces, self.grid.dim, self.free)
 
     def remember(self, acting: np.ndarray, memory: dict[str, np.ndarray]) -> None:
-        """Keep what a contact remembers; nodes at which it does not act forget."""
+        """Save the memory of a contact; nodes at which it does not act lose it."""
         self.forget()
         for name, array in self.memory.items():
             array[self.at[acting]] = memory[name]
 
     def forget(self) -> None:
-        """Let the nodes near the wall forget what its contact remembers."""
+        """Delete the memory of the contact at the nodes near the wall."""
         for name, array in self.memory.items():
             array[self.at] = self._at_start[name]
 
 
 def _faces_at(grid: Grid, number: np.ndarray) -> np.ndarray:
-    """The codes of the faces on which nodes lie, ``(n, dim)``; that of an open one elsewhere."""
+    """The codes of the faces on which nodes lie, ``(n, dim)``; the code of an open face elsewhere."""
     faces = np.full(number.shape, OPEN)
     for axis in range(grid.dim):
         for side, plane in enumerate((0, int(grid.cells[axis]))):

@@ -20,18 +20,18 @@ from .wall import SWEEPS, Wall
 
 @dataclass(frozen=True)
 class Room:
-    """What walls leave of the room of places."""
+    """Part of the volume of points that is not behind walls."""
 
     part: np.ndarray
-    """Part of the room of each, ``(n,)``."""
+    """Part of the volume of each point, ``(n,)``."""
     behind: np.ndarray
     """Whether each is behind a wall, ``(n,)``."""
     image: np.ndarray
-    """The same distance in front of that wall, m, ``(n, dim)``; the place itself in front of all."""
+    """Mirror image in that wall, m, ``(n, dim)``; the point itself if it is in front of all walls."""
 
 
 class Walls:
-    """Lets each wall act where a step constrains nodes: after mapping, and after the momentum equation.
+    """Applies each wall when a step constrains nodes: after mapping, and after the momentum equation.
 
     Walls fold one after the other and fill in the opposite order, after the faces of the grid have folded and
     before they fill for the last time, so that all of it together is a fold and its transpose.
@@ -59,15 +59,15 @@ class Walls:
 
     @property
     def components(self) -> dict[str, Stateful]:
-        """What has a state of its own."""
+        """The components with a state."""
         return dict(zip(self._names, self.walls, strict=True))
 
     def state(self) -> State:
-        """That of its walls."""
+        """The state of its walls."""
         return plain_state(self) | state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Take back a state, for a window and a sorting that are in theirs already."""
+        """Restore a state; the window and the sorting must be restored before."""
         restore_plain(self, state)
         restore(self.components, state)
         if self._sorts >= 0:
@@ -78,15 +78,15 @@ class Walls:
 
     @property
     def moving(self) -> bool:
-        """Whether any wall moves, or may appear or vanish, as far as it has been seen."""
+        """Whether any wall moves, appears or vanishes, as far as known."""
         return any(wall.changes for wall in self.walls)
 
     def room(self, places: np.ndarray, spacing: float, cells: bool) -> Room:
-        """What the walls leave of the room of nodes, or of cells, at some places, m, ``spacing`` m apart.
+        """Part of the volume of nodes or cells, at points, m, ``spacing`` m apart, that is not behind walls.
 
-        The part is that of a plane at the same distance: the integral of the node's spline, or of its cell,
-        over what is in front of it. Where walls meet, the parts are multiplied. What is behind several walls
-        is mirrored by the one that it is farthest behind.
+        The part is computed for a plane at the same distance: the integral of the node's spline, or of its
+        cell, in front of it. Where walls meet, the parts are multiplied. A point behind several walls is
+        mirrored by the wall that it is farthest behind.
         """
         part, deepest = np.ones(len(places)), np.zeros(len(places))
         image = places.copy()
@@ -103,17 +103,17 @@ class Walls:
         return Room(part, deepest < 0, image)
 
     def follow(self, sorting: Sorting) -> None:
-        """Take the nodes that particles can reach from a sorting from now on."""
+        """Set the sorting that gives the nodes that particles can reach."""
         self.sorting = sorting
         self._sorts = -1
 
     @property
     def work(self) -> float:
-        """Energy that all walls have given to the material so far, J."""
+        """Work of all walls on the material so far, J."""
         return float(sum(wall.sums[-1] for wall in self.walls))
 
     def sums(self) -> np.ndarray:
-        """What each wall has given so far, ``(walls, …)``, see ``Wall``."""
+        """Sums of each wall so far, ``(walls, …)``, see ``Wall``."""
         found = np.zeros((len(set(self._of)), len(self.walls[0].sums) if self.walls else 0))
         for number, part in zip(self._of, self.walls, strict=True):
             found[number] += part.sums
@@ -124,7 +124,7 @@ class Walls:
         return max((wall.surface.fastest(t0, t1) for wall in self.walls), default=0.0)
 
     def move_to(self, time: float) -> None:
-        """Be where the walls are at a time, s, and keep particles out of them. Particles must be sorted."""
+        """Move the walls to their positions at a time, s, and keep particles (sorted) out."""
         if self._sorts != self.sorting.sorts:
             active = self._active()
             for wall in self.walls:
@@ -149,15 +149,16 @@ class Walls:
         self.touched = any(wall.touches for wall in self.walls)
 
     def fold(self, momentum: bool, forces: bool) -> None:
-        """Fold what lies on the ghosts of the walls; those of the faces are folded already."""
+        """Fold the values on the ghosts of the walls; ghosts of the faces are already folded."""
         for wall in self.walls if self.touched else ():
             wall.fold(momentum, forces)
 
     def constrain(self, of_faces: np.ndarray, dt: float | None = None, rehearse: bool = False) -> None:
-        """Constrain the velocities as mapped, or as solved in a step of ``dt`` s, and fill their ghosts.
+        """Constrain the velocities after mapping, or after the momentum equation (step ``dt`` s), and fill
+        ghosts.
 
-        The ghosts of the faces are then to be filled again. ``of_faces`` are the sums of what the faces give,
-        which hold nodes against the walls.
+        The ghosts of the faces must then be filled again. ``of_faces`` are the sums of the faces, which hold
+        nodes against the walls.
         """
         touched, solved = [wall for wall in self.walls if wall.touches], dt is not None
         for wall in touched:
@@ -172,7 +173,7 @@ class Walls:
             wall.fill(dt)
 
     def taken_up(self, flip: float) -> None:
-        """Count impulses in mapping, of which particles take a part 1 - ``flip``: see ``move_particles``."""
+        """Count impulses in mapping; particles take the part 1 - ``flip`` of them: see ``move_particles``."""
         for wall in self.walls if self.touched else ():
             wall.taken_up(1 - flip)
 
@@ -185,7 +186,7 @@ class Walls:
             ghosts.fold_pairs(pairs, w.behind, w.at, w.image, w.image_weight, w.touched, w.pair)
 
     def fill_average(self, average: np.ndarray) -> None:
-        """Fill an average, that of the ghosts of the faces too."""
+        """Fill an average on ghosts, including those of the faces."""
         if not self.touched:
             return
         for wall in reversed(self.walls):

@@ -38,7 +38,7 @@
         return say(`The run has ended. Its page stays in ${state.directory}/report/index.html.`);
       }
     } catch {
-      return say('The run has ended, and this page shows what it was last.');
+      return say('The run has ended. This page shows its last state.');
     }
     setTimeout(follow, EVERY);
   }

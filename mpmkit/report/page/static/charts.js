@@ -2,14 +2,14 @@
 
 const HEIGHT = 260;
 
-/** Colours of curves, told apart by colour-blind readers as well, as the style of the page has them. */
+/** Colours of curves, from the style of the page; colour-blind readers can distinguish them. */
 function curveColours() {
   return [1, 2, 3, 4, 5, 6, 7, 8].map((k) => styled(`--curve-${k}`));
 }
 
 class Chart {
   /**
-   * `place` is an element; `seek` is called with a time on which somebody clicks.
+   * `place` is an element; `seek` is called with the time of a click.
    * `data` has title, unit, x, xLabel, xUnit, curves of label and values; it may be logarithmic and have a band,
    * or be one of points that have names.
    */
@@ -75,7 +75,7 @@ class Chart {
       hooks: {
         setCursor: [(u) => this.say(u.cursor.idx)],
         drawClear: [(u) => this.drawBand(u)],
-        draw: [() => this.now && this.time !== undefined && this.mark(this.time)], // also where a part is enlarged
+        draw: [() => this.now && this.time !== undefined && this.mark(this.time)], // also if a part is enlarged
       },
     };
   }
@@ -90,7 +90,7 @@ class Chart {
     return Math.max(200, this.plot.clientWidth);
   }
 
-  /** Shade the range of a flow curve that was reached, and mark its end. */
+  /** Shade the range of shear rates that was reached, and mark its end. */
   drawBand(u) {
     const { band } = this.data;
     if (!band) return;
@@ -108,7 +108,7 @@ class Chart {
     ctx.restore();
   }
 
-  /** Show the values of a row below the chart; those of the last row where there is none. */
+  /** Show the values of a row below the chart; of the last row if none is given. */
   say(row) {
     const { data } = this;
     const at = row ?? (this.data.names ? null : data.x.length - 1);
@@ -144,7 +144,7 @@ class Chart {
 
   listen() {
     this.plot.addEventListener('keydown', (event) => {
-      this.reading.setAttribute('aria-live', 'polite'); // whoever reads by keys may be listening
+      this.reading.setAttribute('aria-live', 'polite'); // for screen readers
       const step = { ArrowLeft: -1, ArrowRight: 1, PageUp: -20, PageDown: 20 }[event.key];
       if (event.key === 'Home') this.moveTo(0);
       else if (event.key === 'End') this.moveTo(this.data.x.length - 1);
@@ -199,7 +199,7 @@ function isPower(value) {
   return Math.abs(exponent - Math.round(exponent)) < 1e-6;
 }
 
-/** A power of ten as 10ⁿ, or plain where it is short; nothing for what is between. */
+/** A power of ten as 10ⁿ, or as a plain number if it is short; empty for other values. */
 function power(value) {
   if (!isPower(value)) return shown(value, 1);
   const n = Math.round(Math.log10(value));
@@ -223,11 +223,11 @@ function decades(_, low, high) {
   return [Math.pow(10, from), Math.pow(10, Math.max(to, from + 1))];
 }
 
-/** The range of values with some room; from 0 where nothing is below it. */
+/** The range of values with a margin; it starts at 0 if no value is negative. */
 function roomy(_, low, high) {
   if (low === null || high === null) return [0, 1];
   if (low === high) return low === 0 ? [0, 1] : low > 0 ? [0, 1.2 * high] : [1.2 * low, 0];
-  const least = 0.02 * Math.max(Math.abs(low), Math.abs(high)); // a ripple is not to look like a wave
+  const least = 0.02 * Math.max(Math.abs(low), Math.abs(high)); // small fluctuations must not fill the chart
   if (high - low < least) return [(low + high - least) / 2, (low + high + least) / 2];
   const room = 0.06 * (high - low);
   const near = low >= 0 && low < 0.6 * high;

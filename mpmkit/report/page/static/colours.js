@@ -25,12 +25,12 @@ function ramp(colours, stepped) {
   return bytes;
 }
 
-/** Value of a quantity at a place from 0 to 1 of its scale. */
+/** Value of a quantity at a position from 0 to 1 on its scale. */
 function valueAt({ low, high, logarithmic }, part) {
   return logarithmic ? low * Math.pow(high / low, part) : low + part * (high - low);
 }
 
-/** A number with about so many digits, without an exponent where it can be read without. */
+/** A number with about `digits` digits; with an exponent only if it is very large or very small. */
 function shown(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
@@ -39,7 +39,7 @@ function shown(value, digits = 3) {
   return value.toFixed(Math.max(0, digits - 1 - size)).replace('-', '−');
 }
 
-/** Round numbers between two, about `count` of them. */
+/** About `count` round numbers between two values. */
 function ticks(low, high, count) {
   const rough = (high - low) / Math.max(1, count);
   const power = Math.pow(10, Math.floor(Math.log10(rough)));
@@ -49,7 +49,7 @@ function ticks(low, high, count) {
   return { found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 
-/** A pen for an empty canvas, whose units are pixels of the page. */
+/** The drawing context of an empty canvas, in pixels of the page. */
 function penOf(canvas) {
   const density = window.devicePixelRatio || 1;
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight].map((length) => Math.round(length * density));

@@ -30,7 +30,7 @@ class Flow {
     return [low, Math.min(1, Math.max(0, (time - this.moments[low].time) / span))];
   }
 
-  /** The time at which the material is fastest on the whole. */
+  /** The time at which the mean speed of the material is largest. */
   liveliest() {
     let best = 0;
     let time = this.start;
@@ -53,7 +53,7 @@ class Flow {
     const dim = this.dim;
     const codes = [before.code[quantity], after.code[quantity]];
     const nearest = quantity === 'yielded';
-    const grow = (this.grow = Math.pow(before.share, -1 / dim)); // each stands for those that were left out as well
+    const grow = (this.grow = Math.pow(before.share, -1 / dim)); // each also fills the volume of those that were left out
     const half = [before.size[0], before.size[before.size.length - 1]];
     for (let k = 0; k < before.count; k++) {
       const row = 6 * k;
@@ -75,13 +75,13 @@ class Flow {
     return this;
   }
 
-  /** Whether a step, of 65535 for the whole extent, is one through a periodic face. */
+  /** Whether a step crosses a periodic face; 65535 is the whole extent. */
   jumps(axis, step) {
     const period = this.scene.domain.periods[axis];
     return period !== null && (Math.abs(step) / 65535) * this.scene.packing.extent[axis] > period / 2;
   }
 
-  /** For each particle of a moment its place in the next; null where they are the same. */
+  /** For each particle of a moment its index in the next moment; null if both have the same particles. */
   partners(index) {
     if (index === this.pair) return this.partner;
     this.pair = index;

@@ -11,13 +11,13 @@ function times(a, b) {
   return found;
 }
 
-/** Perspective with an angle of view, rad, and the distances of what is nearest and farthest. */
+/** Perspective with an angle of view, rad, and the distances of the near and far planes. */
 function perspective(angle, aspect, near, far) {
   const f = 1 / Math.tan(angle / 2);
   return new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0]);
 }
 
-/** Seen from a distance to a target, from a direction given by its angle about z and above the floor. */
+/** View of a target from a distance; the direction is given by its angle about z and above the floor. */
 function orbit(target, turn, rise, distance) {
   const [ct, st, cr, sr] = [Math.cos(turn), Math.sin(turn), Math.cos(rise), Math.sin(rise)];
   const right = [-st, ct, 0];

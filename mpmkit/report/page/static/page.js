@@ -1,4 +1,4 @@
-/* Brings the page to life: its charts and its player, and newer data where a run is still at work. */
+/* Starts the charts and the player of a page, and updates them while a run is in progress. */
 
 const page = { charts: [], player: null };
 
@@ -24,7 +24,7 @@ async function mountPlayer(root, scene, before) {
     page.player = new Player(root, scene, moments, before);
   } catch (error) {
     if (error.message !== 'no WebGL') throw error;
-    return refuse(root, 'This browser does not draw with WebGL 2, which the player of the flow needs; all else on this page works without it.');
+    return refuse(root, 'This browser does not draw with WebGL 2, which the player of the flow needs; the rest of this page works without it.');
   }
   page.player.listeners.push((time) => page.charts.forEach((chart) => chart.mark(time)));
   page.player.show();
@@ -38,7 +38,7 @@ function refuse(root, sentence) {
   root.replaceChildren(said);
 }
 
-/** Take over the content of a newer page, given as its HTML; the player stays at its time. */
+/** Replace the content by that of a newer page, given as HTML; the player keeps its time. */
 async function take(html) {
   const newer = new DOMParser().parseFromString(html, 'text/html');
   document.querySelector('header').replaceWith(newer.querySelector('header'));

@@ -3,14 +3,14 @@
 const LASTS = 8; // seconds that a run takes by default to play
 const FACTORS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
-/** A speed of playing in words. */
+/** The playback speed in words. */
 function pace(factor) {
   if (factor === 1) return 'real time';
   return factor < 1 ? `${Math.round(1 / factor)} × slower` : `${factor} × faster`;
 }
 
 class Player {
-  /** `before` is the state of the player that this one takes the place of. */
+  /** `before` is the state of the player that this one replaces. */
   constructor(root, scene, moments, before = {}) {
     this.root = root;
     this.scene = scene;
@@ -89,7 +89,7 @@ class Player {
     this.view.listen(() => this.show());
   }
 
-  /** Stop for good: another player takes the place. */
+  /** Stop for good: another player replaces this one. */
   close() {
     this.pause();
     this.stopped.abort();
@@ -135,7 +135,7 @@ class Player {
     for (const tell of this.listeners) tell(time);
   }
 
-  /** Say what is under the pointer. */
+  /** Show the value under the pointer. */
   read(event) {
     const box = this.stage.getBoundingClientRect();
     const found = this.view.under(this.flow, event.clientX - box.left, event.clientY - box.top);

@@ -1,7 +1,7 @@
 /* The section of a scene in two dimensions, with axes in mm and walls. */
 
 const EDGES = { left: 52, right: 14, top: 12, bottom: 40 };
-const REACH = 1; // cells over which a box is spread, so that gaps between boxes that part are closed
+const REACH = 1; // cells over which a box is spread, to close gaps between boxes that move apart
 const SHORTEST = 190;
 
 class SectionView {
@@ -16,7 +16,7 @@ class SectionView {
     this.limits = this.around();
   }
 
-  /** Lower and upper corner of what is seen, m: the material at all times, its image, and some room. */
+  /** Lower and upper corner of the view, m: the material at all times, its mirror image, and a margin. */
   around() {
     const { lower, upper } = this.scene.material;
     const low = [...lower];
@@ -31,7 +31,7 @@ class SectionView {
     return [low[0] - room, Math.min(floor, low[1]), high[0] + room, high[1] + room];
   }
 
-  /** Find the scale, pixels a metre, for the width that there is, and make the stage as high as it asks for. */
+  /** Find the scale, pixels per metre, from the available width, and set the height of the stage. */
   fit() {
     const width = this.stage.clientWidth - EDGES.left - EDGES.right;
     const [x0, y0, x1, y1] = this.limits;
@@ -42,7 +42,7 @@ class SectionView {
     this.shift = [EDGES.left + (width - (x1 - x0) * this.scale) / 2 - x0 * this.scale, EDGES.top + height + y0 * this.scale];
   }
 
-  /** Place on the stage, px, of a point, m. */
+  /** Position on the stage, px, of a point, m. */
   place(x, y) {
     return [this.shift[0] + x * this.scale, this.shift[1] - y * this.scale];
   }
@@ -60,7 +60,7 @@ class SectionView {
     const { lower, upper } = this.ends();
     const [left, bottom] = this.place(lower[0], lower[1]);
     const [right, top] = this.place(upper[0], upper[1]);
-    gl.enable(gl.SCISSOR_TEST); // a box that reaches over a face stands for material in front of it
+    gl.enable(gl.SCISSOR_TEST); // the part of a box behind a face is not drawn
     gl.scissor(...[left, height - bottom, right - left, bottom - top].map((length) => Math.round(length * density)));
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
@@ -74,7 +74,7 @@ class SectionView {
     this.drawOver(place);
   }
 
-  /** The images, and what faces of the domain make of them: without it a surface would be found at a floor. */
+  /** The images, and their images behind the faces: without these, a floor would look like a free surface. */
   beyondFaces() {
     const { lower, upper, closed, periods } = this.scene.domain;
     const found = [...this.images];
@@ -202,7 +202,7 @@ class SectionView {
     pen.restore();
   }
 
-  /** What is at a place on the stage: the value, from 0 to 1 of its scale, and the point; null if nothing is. */
+  /** The value, from 0 to 1 of its scale, and the point at a position on the stage; null without material. */
   under(flow, px, py) {
     const [x, y] = this.point(px, py);
     let best = null;
@@ -218,7 +218,7 @@ class SectionView {
     return best === null ? null : { value: best, point: [x, y] };
   }
 
-  /** Nothing to turn here. */
+  /** A section cannot be turned. */
   listen() {}
 
   state() {

@@ -8,7 +8,7 @@ const KEYS = {
   ArrowUp: ['rise', 0.08],
   ArrowDown: ['rise', -0.08],
 };
-const FULLER = 1.25; // balls of the volume of a box leave gaps that boxes do not
+const FULLER = 1.25; // balls with the volume of their boxes would leave gaps
 
 class SolidView {
   constructor(stage, scene, walls, state) {
@@ -74,7 +74,7 @@ class SolidView {
     this.label();
   }
 
-  /** How large the squares of the floor are. */
+  /** Write the size of the squares of the floor. */
   label() {
     const canvas = this.stage.querySelector('.over');
     const pen = penOf(canvas);
@@ -85,7 +85,7 @@ class SolidView {
     pen.fillText(`squares of ${side}`, canvas.clientWidth - 12, canvas.clientHeight - 12);
   }
 
-  /** Nothing is read from a ball. */
+  /** No value is read from a ball. */
   under() {
     return null;
   }
@@ -115,7 +115,7 @@ class SolidView {
       stage.addEventListener(kind, (event) => pointers.delete(event.pointerId));
     }
     stage.addEventListener('wheel', (event) => {
-      if (document.activeElement !== stage && !event.ctrlKey) return; // else the page would not scroll past it
+      if (document.activeElement !== stage && !event.ctrlKey) return; // otherwise the page could not scroll past it
       event.preventDefault();
       this.zoom(Math.exp(-0.0015 * event.deltaY));
       changed();

@@ -136,7 +136,7 @@ class Surface {
     return buffer;
   }
 
-  /** Set the numbers of a program, by their names: 1 to 4 of them, or 16. */
+  /** Set the uniforms of a program by name: 1 to 4 numbers, or 16. */
   set(of, numbers) {
     const { gl } = this;
     for (const [name, value] of Object.entries(numbers)) {
@@ -158,7 +158,7 @@ class Surface {
     return place;
   }
 
-  /** Take up the size of the canvas on the screen; leave it empty. */
+  /** Adopt the size of the canvas on the screen, and clear it. */
   clear() {
     const { gl, canvas } = this;
     const density = window.devicePixelRatio || 1;
@@ -202,7 +202,7 @@ class Surface {
     for (const place of places) gl.disableVertexAttribArray(place);
   }
 
-  /** A texture of half precision, and what draws into it. */
+  /** A texture of half precision, and the framebuffer that draws into it. */
   target() {
     return { texture: this.gl.createTexture(), frame: this.gl.createFramebuffer(), width: 0, height: 0 };
   }
@@ -210,7 +210,7 @@ class Surface {
   /** Add up areas and values of all images of the particles, and fill the material with their mean. */
   blend(images, numbers, stepped) {
     const { gl, canvas, sums } = this;
-    if (!sums) return; // boxes alone have to do
+    if (!sums) return; // without float textures, draw only boxes
     gl.bindFramebuffer(gl.FRAMEBUFFER, sums.frame);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, sums.texture);
@@ -236,7 +236,7 @@ class Surface {
     gl.activeTexture(gl.TEXTURE0);
   }
 
-  /** Draw the triangles of a shape, or with `lines` pairs of points; the shape is kept for the next time. */
+  /** Draw the triangles of a shape, or pairs of points with `lines`; the shape is cached. */
   facet(shape, numbers, lines = false) {
     const { gl, facets } = this;
     if (!this.shapes.has(shape)) {
@@ -254,7 +254,7 @@ class Surface {
   }
 }
 
-/** What mirrors make of the material: flips and shifts along each axis, first none. */
+/** The mirror images of the material: flips and shifts along each axis; the first is the original. */
 function images(mirrors) {
   let found = [{ flip: mirrors.map(() => 1), move: mirrors.map(() => 0) }];
   mirrors.forEach((plane, axis) => {

@@ -5,7 +5,7 @@ function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
-/** What was deflated. */
+/** Inflates deflated bytes. */
 async function inflated(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -27,7 +27,7 @@ async function unpacked(packing, text) {
     return numbers;
   }
 
-  /** A plane of numbers, or of their changes, which typed arrays add modulo the size of a number. */
+  /** One number of each particle, or its change; typed arrays add modulo 2 to the number of bits. */
   function plane(width, count, before) {
     const numbers = take(width, count);
     if (before) for (let k = 0; k < count; k++) numbers[k] += before[k];

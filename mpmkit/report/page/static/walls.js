@@ -1,4 +1,4 @@
-/* Walls: their drawings, and how they stand at a time. */
+/* Walls: their drawings, and their positions at a time. */
 
 class Wall {
   constructor(data, dim) {
@@ -11,7 +11,7 @@ class Wall {
     }));
   }
 
-  /** Drawing, turn (by rows) and shift between two moments; null where the wall is not there. */
+  /** Drawing, rotation (by rows) and shift between two moments; null if the wall is not present. */
   at([index, part]) {
     const from = this.places[index];
     const to = this.places[index + 1] ?? from;
