@@ -230,3 +230,12 @@ def test_a_part_at_its_default_is_named_in_full():
     assert sentence(parse_case, case, registry=Registry(others, [])) == (
         "case: scheme.shape is missing; it must be \"linear\", or an object with such a 'name'"
     )
+
+
+def test_a_sound_speed_has_one_choice():
+    slump, changes = (
+        Path(__file__).parents[1] / "cases/slump.json",
+        ["bodies.0.material.sound_speed.factor=50"],
+    )
+    said = sentence(load_case, slump, changes)
+    assert 'it has mach and factor; it must have one of them, such as {"factor": 10}' in said

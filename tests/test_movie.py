@@ -209,7 +209,7 @@ def test_bad_input_is_one_sentence(run, tmp_path, monkeypatch, capsys, arguments
 
 def test_mp4_without_its_package_says_what_to_install(run, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
-    with pytest.raises(CaseError, match=r"pip install 'mpmkit\[movie\]', or write a .gif"):
+    with pytest.raises(CaseError, match=r"pip install imageio-ffmpeg, or write a .gif"):
         make_movie(run, tmp_path / "a.mp4")
 
 

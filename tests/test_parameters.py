@@ -9,6 +9,7 @@ from mpmkit.case import case_schema, parse_case
 from mpmkit.case.formula import LONGEST, evaluate, parse
 from mpmkit.case.overrides import apply_overrides
 from mpmkit.case.parameters import expand, fine
+from mpmkit.case.schema import FORMULA
 from mpmkit.errors import CaseError
 from mpmkit.registry import installed
 from mpmkit.study import members_of
@@ -148,8 +149,8 @@ def test_a_study_varies_a_parameter_and_makes_a_law_of_its_numbers():
 def test_the_schema_allows_parameters_and_formulas():
     schema = case_schema(installed())
     assert schema["properties"]["parameters"]["type"] == "object"
-    until = schema["properties"]["until"]["anyOf"]
-    assert until[0] == {"exclusiveMinimum": 0.0, "type": "number"} or until[0]["type"] == "number"
-    assert until[1]["type"] == "string"
-    assert "exclusiveMinimum" not in schema["properties"]["until"]
+    size = schema["$defs"]["Grid"]["properties"]["cell_size"]
+    assert size["anyOf"] == [{"exclusiveMinimum": 0, "type": "number"}, FORMULA]
+    assert FORMULA["type"] == "string"
+    assert "exclusiveMinimum" not in size
     json.dumps(schema)

@@ -77,7 +77,7 @@ def test_in_three_dimensions_a_turn_has_a_direction():
     drum = {"kind": "cylinder", "radius": 0.3, "height": 0.4}
     surface = {"kind": "body", "shape": drum, "side": "inside", "motion": turn}
     override = {"drum": {"surface": surface, "contact": "stick"}}
-    case = mpmkit.load_case(CASES / "slump_quarter.json", [f"walls={json.dumps(override)}"])
+    case = mpmkit.load_case(CASES / "slump_quarter.json", ["until=1", f"walls={json.dumps(override)}"])
     expected = "turns at 2 rad/s about the direction (0, 0, 1) through (0, 0, 0) m from t = 0 s on"
     assert setting(case)[-1].endswith(expected)
 

@@ -41,7 +41,7 @@ SHARED = {
 """Figures of the summary that a page shows beside what the case measures."""
 EXPLAINED = {
     "t500_from_lift": "t500: time to 500 mm from the start of the lift",
-    "at_rest_since": "since when the material has been at rest",
+    "at_rest_since": "time from which the material is at rest",
     "final_height": "height at the end",
     "final_spread": "width at the end",
 }
@@ -101,12 +101,14 @@ def page(name: str) -> str:
               f"{summary['simulated_time']:g} s; {state(summary)}.", ""]  # fmt: skip
     if name in FORMULAS:
         lines += ["## Held against", ""]
-        lines += table(["closed form", "it says", "the run", "difference"], list(held(name, given, summary)))
+        head = ["closed form", "its value", "the run", "difference"]
+        lines += table(head, list(held(name, given, summary)))
         lines.append("")
     lines += [remark, ""] if remark else []
     if any(formula.words == THIN for formula in FORMULAS.get(name, [])):
         lines += [
-            f"Why the second is too long, and the first is not: [layers that come to rest]({DEPOSITS}).",
+            f"[Layers that come to rest]({DEPOSITS}) explains why the second value is too large "
+            "and the first is not.",
             "",
         ]
     lines += ["## What the model leaves out", ""]
@@ -159,10 +161,10 @@ def gallery(done: list[str]) -> str:
     lines = [
         "# The laboratory",
         "",
-        "Tests that people really do, each one command. `mpmkit cases` lists them with the time that each",
+        "Common laboratory tests, each with one command. `mpmkit cases` lists them with the time that each",
         "takes on this machine, `mpmkit init NAME` writes one with its parameters at the top, and",
-        "`mpmkit run FILE` runs it. The runs on these pages are the coarse variants as they ship; `--fine`",
-        "writes the fine one.",
+        "`mpmkit run FILE` runs it. The runs on these pages are the coarse variants, as shipped. `--fine`",
+        "writes the fine variant.",
         "",
     ]
     rows = []

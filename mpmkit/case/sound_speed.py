@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from ..contracts import quantity
 from .base import Model
@@ -28,6 +28,13 @@ class SoundSpeedMach(Model):
     """
 
     mach: float = quantity("1", "largest Mach number that the flow can reach", gt=0, lt=1)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _is_one_choice(cls, value: Any) -> Any:
+        if isinstance(value, dict) and {"mach", "factor"} <= value.keys():
+            raise ValueError('it has mach and factor; it must have one of them, such as {"factor": 10}')
+        return value
 
 
 SoundSpeed = Annotated[

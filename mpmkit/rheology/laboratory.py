@@ -112,8 +112,8 @@ def _turning_vane(p: Given) -> float:
     return _vane(p, p["turns_per_second"])
 
 
-STRETCHED = "a thin layer at rest, with what it takes to stretch it"
-THIN = "a thin layer at rest, by lubrication alone"
+STRETCHED = "thin layer at rest, lubrication and stretching"
+THIN = "thin layer at rest, lubrication alone"
 
 
 def _layer(measured: str, of: Callable[[Given, float], float], c: float, band: float) -> list[Formula]:

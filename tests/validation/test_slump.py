@@ -179,7 +179,7 @@ def test_update_orders_agree(validate, order):
 
 def test_own_pressure_locks_on_a_stick_floor(validate):
     """What the averaging is for; the more incompressible, the less by own pressure moves at all."""
-    stick = [*cells(20), "grid.faces.z_min=stick", "bodies.0.material.sound_speed.factor=50"]
+    stick = [*cells(20), "grid.faces.z_min=stick", 'bodies.0.material.sound_speed={"factor": 50}']
     averaged, own = (
         Slump(mpmkit.load_case(ROOT / "cases/slump.json", [*stick, f"scheme.volumetric={name}"]), until=0.5)
         for name in ("nodal-average", "own")

@@ -19,7 +19,7 @@ FINE = [
     "until=1",
     "grid.cell_size=0.01",
     'grid.domain={"r": [0, 0.36], "z": [0, 0.31]}',
-    "bodies.0.material.sound_speed.factor=20",
+    'bodies.0.material.sound_speed={"factor": 20}',
     "bodies.0.particles_per_cell=9",
 ]
 """The references: half the cell, averaged volumes."""
