@@ -86,7 +86,7 @@ BAD = {
     ),
     "a path that is none": (
         {"case": "tiny.json", "members": {"a": {"scheme..order": "usl"}}},
-        "study 's', member member = a: 'scheme..order' is no path",
+        "study 's', member member = a: 'scheme..order' is not a path",
     ),
     "members that are a list": (
         {"case": "tiny.json", "members": [{}]},
