@@ -197,7 +197,7 @@ def test_the_time_that_comes_first_is_told(caplog):
         ({"rest": True}, "until.at_most is missing; it must be a number above 0, in s"),
         ({"rest": 1, "at_most": 1}, "until.rest is 1; it must be true or false"),
         ({"spread_diametre": {"at_least": 1}, "at_most": 1}, "did you mean 'spread_diameter'?"),
-        ({"momentum": {"at_least": 1}, "at_most": 1}, "until has the key 'momentum', which is no scalar"),
+        ({"momentum": {"at_least": 1}, "at_most": 1}, "until has the key 'momentum', which is not a scalar"),
         ({"height": 1, "at_most": 1}, "until.height is 1; it must be an object"),
         ({"height": {}, "at_most": 1}, "until.height: it must have at_least, at_most or both"),
         ({"height": {"at_least": 2, "at_most": 1}, "at_most": 1}, "no value is between them"),
