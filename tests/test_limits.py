@@ -19,7 +19,7 @@ def rubber():
 
 
 def moving(F):
-    """What the law is told of particles at rest with deformation gradients F."""
+    """What the law gets of particles at rest with deformation gradients F."""
     F = np.array(F, dtype=float)
     n = len(F)
     return Kinematics(

@@ -141,7 +141,10 @@ BAD = {
         },
         "common.scheme.shape.domain is a part of vary.scheme.shape, which replaces it in every member",
     ),
-    "numbers that are none": ('{"case": "tiny.json", "vary": {"until": [NaN]}}', "vary.until.0: NaN is not"),
+    "numbers that are not finite": (
+        '{"case": "tiny.json", "vary": {"until": [NaN]}}',
+        "vary.until.0: NaN is not",
+    ),
 }
 
 

@@ -139,7 +139,7 @@ def held(name: str, given: dict[str, Parameter], summary: dict):
 
 def state(summary: dict) -> str:
     since = summary["at_rest_since"]
-    return "it still moves at the end" if since is None else f"at rest since t = {since:.3g} s"
+    return "the material is still moving at the end" if since is None else f"at rest since t = {since:.3g} s"
 
 
 def shown(value: float | None, unit: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 
 class Model(BaseModel):
@@ -17,3 +17,16 @@ class Model(BaseModel):
         )
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def name_of_directory(default: str, description: str) -> Any:
+    """The field of a name that is also the name of a directory."""
+    return Field(
+        default=default,
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
+        max_length=100,
+        description=description,
+        json_schema_extra={
+            "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
+        },
+    )

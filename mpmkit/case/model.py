@@ -22,7 +22,7 @@ from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..spaces import SPACES, Space
-from .base import Model
+from .base import Model, name_of_directory
 from .ending import AnyUntil, latest
 from .faces import Face
 from .measurements import Measurement
@@ -187,15 +187,7 @@ class Wall(Model):
 class Case(Model):
     """A whole scene."""
 
-    name: str = Field(
-        default="case",
-        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
-        max_length=100,
-        description="name of its run directory",
-        json_schema_extra={
-            "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
-        },
-    )
+    name: str = name_of_directory("case", "name of its run directory")
     description: str = Field(default="", description="free text about the case")
     space: Literal["3d", "plane-strain", "axisymmetric"] = Field(
         description="axes of the scene: x, y, z in 3d; x, z in plane-strain; r, z in axisymmetric"

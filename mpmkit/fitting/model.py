@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, WithJsonSchema, model_validator
 
-from ..case.base import Model
+from ..case.base import Model, name_of_directory
 
 
 def _said(kind: str, allowed: str) -> WithJsonSchema:
@@ -161,15 +161,7 @@ class Budget(Model):
 class Fit(Model):
     """Measurements, the cases that model them, and the parameters to find."""
 
-    name: str = Field(
-        default="fit",
-        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
-        max_length=100,
-        description="name of its directory",
-        json_schema_extra={
-            "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
-        },
-    )
+    name: str = name_of_directory("fit", "name of its directory")
     description: str = ""
     tests: dict[str, Test] = Field(min_length=1, description="the tests of the material, by name")
     parameters: dict[str, Parameter] = Field(

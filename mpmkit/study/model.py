@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, WithJsonSchema, model_validator
 
-from ..case.base import Model
+from ..case.base import Model, name_of_directory
 from .clashes import clash, replaced
 from .quantities import TAKEN
 
@@ -30,15 +30,7 @@ DIMENSION = r"[A-Za-z0-9_][A-Za-z0-9_.-]*"
 class Study(Model):
     """Variations of a case: the grid of everything in ``vary``, or the list of ``members``."""
 
-    name: str = Field(
-        default="study",
-        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
-        max_length=100,
-        description="name of its directory",
-        json_schema_extra={
-            "allowed": "at most 100 letters, digits, '_', '.' and '-', first a letter or a digit"
-        },
-    )
+    name: str = name_of_directory("study", "name of its directory")
     description: str = ""
     case: (
         Annotated[str, _said("string", "the path of a case file")]
