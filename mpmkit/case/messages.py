@@ -166,6 +166,8 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
     if path[0] == "sinks":
         kinds = ["sink"]
+    if path[0] == "sources" and not kinds:
+        kinds = ["source"]
     if path[0] == "output":
         kinds = [MEASURED[key] for key in path[1:2] if key in MEASURED]
     if not kinds or not registry.problems:

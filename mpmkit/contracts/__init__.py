@@ -12,10 +12,12 @@ from .hooks import KINDS, hookimpl
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .rate import Rate, RateTable
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -38,17 +40,21 @@ __all__ = [
     "GeneralisedNewtonianLaw",
     "Kinematics",
     "Lattice",
+    "Mouth",
     "Observed",
     "Operations",
     "ParticleField",
     "PlacedSurface",
     "Plugin",
+    "Rate",
+    "RateTable",
     "Redistributing",
     "Redistribution",
     "Refinement",
     "Refining",
     "ShapeFunction",
     "Sink",
+    "Source",
     "Space",
     "StateVariable",
     "Surface",

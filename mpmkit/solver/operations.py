@@ -21,6 +21,7 @@ from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .sources import Sources
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .touch import Touch
 from .walls import Faces, Walls
@@ -49,10 +50,13 @@ class SceneOperations:
         self.relaxation = Relaxation(scheme, radial)
         self.walls = Walls(case, grid, self.window, particles)
         self.faces = Faces(grid)
-        self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
+        self.sources = Sources(case, grid, self.window, particles)
+        spacing = min(grid.cell_size / min(one.particles_along_axes(dim)) for one in case.filled)
+        self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity, spacing)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
+        self.time = 0.0
         self._begun = 0
         self._auditing = self._rehearsing = True
         self._all_fluid = all(group.law.uses_equation_of_state for group in particles.groups)
@@ -105,6 +109,7 @@ class SceneOperations:
             "stage": self.stage,
             "walls": self.walls,
             "faces": self.faces,
+            "sources": self.sources,
         }
 
     def state(self) -> State:
@@ -137,6 +142,7 @@ class SceneOperations:
             self._evaluate_shapes()
             self.touch.mark(self.window, self.sorting, self.base, self.weight, begins=self._begun == 1)
             self.walls.mark(self.base, self.weight)
+            self.time = time
         return lost
 
     def _sort(self) -> int | None:
@@ -170,6 +176,7 @@ class SceneOperations:
 
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
+        self.sources.begin(self.time, dt, self.sorting)
         self._account.begin()
         try:
             self.scheme.order.step(self._for_order, dt)
@@ -213,6 +220,7 @@ class SceneOperations:
             p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure, self.gravity,
             self.cell_size, momentum, forces,
         )  # fmt: skip
+        self.sources.map(momentum, forces)
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
@@ -231,13 +239,16 @@ class SceneOperations:
         if self.walls.touched:
             self.walls.constrain(self.faces.given(dt is not None), dt, self._rehearsing)
             self.faces.fill(self.window, self.sorting.active, dt)
+        self.sources.carry(dt)
 
     # --- Nodes
 
     @property
     def mapped_mass(self) -> float | None:
         """Mass mapped to the nodes in the last step, kg; None if there was no step since they were made."""
-        return float(self.window.nodes[:, 0].sum()) if self._stepped else None
+        if not self._stepped:
+            return None
+        return float(self.window.nodes[:, 0].sum()) - self.sources.mapped_mass
 
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
@@ -271,6 +282,7 @@ class SceneOperations:
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self.walls.taken_up(flip)
         self.faces.taken_up(1 - flip)
+        self.sources.taken_up(flip)
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 
@@ -298,9 +310,10 @@ class SceneOperations:
     def update_stress(self, dt: float) -> None:
         p = self.particles
         self._account.stressed(dt)
+        p.age += dt
         self._update_volumes(dt)
         self._follow_domains(dt)
-        for group in p.groups:
+        for group in p.present_groups:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
@@ -321,7 +334,7 @@ class SceneOperations:
         volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
-        for group in p.groups:
+        for group in p.present_groups:
             part = group.part
             if group.law.uses_equation_of_state:
                 volumes.assign(p.pressure[part], self._pressure(group, p.volume_ratio[part]))
@@ -347,7 +360,7 @@ class SceneOperations:
         if not self.scheme.redistribution.equal_boxes:
             self._follow_deformation(slice(0, len(p)), dt)
         elif not self._all_fluid:
-            for group in p.groups:
+            for group in p.present_groups:
                 if not group.law.uses_equation_of_state:
                     self._follow_deformation(group.part, dt)
         self.stage.follow(dt)

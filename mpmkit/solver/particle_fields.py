@@ -29,7 +29,7 @@ def yielded(p: Particles) -> np.ndarray:
     """
     stress, rate = shear_stress(p), shear_rate(p.velocity_gradient)
     found = np.zeros(len(p), dtype=np.int32)
-    for group in p.groups:
+    for group in p.present_groups:
         part, limit = group.part, group.law.yield_point(group.state)
         if limit is None:
             found[part] = rate[part] > 0

@@ -15,7 +15,7 @@ from .diagnosed import diagnosed
 from .draining import Drains
 from .grid import Grid
 from .guards import Guards, stop
-from .ledger import REDISTRIBUTION, WALLS, Ledger, present
+from .ledger import IN, REDISTRIBUTION, WALLS, Ledger, present
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
@@ -124,8 +124,10 @@ class Simulation:
         p = self.particles
         mass, doubled, square = kinetics(p.mass, p.velocity)
         ahead = self.time + self._interval * getattr(self, "time_step", 0.0)
-        speed = max(math.sqrt(square), self.operations.walls.fastest(self.time, ahead))
+        driven = (self.operations.walls, self.operations.sources)
+        speed = max(math.sqrt(square), *(one.fastest(self.time, ahead) for one in driven))
         self.mach_number = mach_number(p, speed)
+        mass = mass or 1.0  # a scene may begin empty
         waves = [(group, p.wave_speed(group)) for group in p.groups]
         self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
@@ -186,6 +188,8 @@ class Simulation:
 
     def _advance(self, at_most: float) -> float:
         self.prepare()
+        if not len(self.particles):
+            return self._wait(min(self.time_step, at_most))
         try:
             lost = self.operations.begin(self.time)
         except Scattered as error:
@@ -199,7 +203,16 @@ class Simulation:
         self.time += dt
         self.steps += 1
         self.particle_steps += len(self.particles)
-        if self.drains.take_out(self.time):
+        came_in = self.operations.sources.bring_in(self.time, dt, self.ledger)
+        if self.drains.take_out(self.time) or came_in:
+            self._renew()
+        return dt
+
+    def _wait(self, dt: float) -> float:
+        """A step of an empty scene, in which something may come in."""
+        self.time += dt
+        self.steps += 1
+        if self.operations.sources.bring_in(self.time, dt, self.ledger):
             self._renew()
         return dt
 
@@ -218,11 +231,12 @@ class Simulation:
     def _follow_flow(self) -> None:
         """Recompute the sound speeds that follow the flow."""
         gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
-        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
+        goes_on = self.operations.sources.goes_on(self.time)
+        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed, goes_on)
 
     def _refine(self) -> None:
         """Let the refinement split and merge particles."""
-        if not self.refiner.acts:
+        if not self.refiner.acts or not len(self.particles):
             return
         p = self.particles
         before, height = present(p), self.ledger.height(p)
@@ -243,6 +257,8 @@ class Simulation:
             "time_step": self.time_step,
             "mach_number": self.mach_number,
         }
+        if self.case.sources:
+            found["mass_in"] = float(self.operations.sources.mass_in.sum())
         if self.case.sinks:
             found["mass_out"] = float(self.ledger.mass_out.sum())
         with self.blaming:
@@ -250,10 +266,11 @@ class Simulation:
 
     def account(self) -> np.ndarray:
         """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
-        dim, stage = self.grid.dim, self.operations.stage
+        dim, stage, sources = self.grid.dim, self.operations.stage, self.operations.sources
         by_cause = {
             WALLS: (self._impulse_of_walls(dim), self.walls_work),
             REDISTRIBUTION: (stage.momentum, stage.energy),
+            IN: (sources.impulse, sources.work),
         }
         return self.ledger.account(self.particles, self.time, by_cause)
 
