@@ -97,9 +97,14 @@ def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
     return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
 
 
+def _of_names(annotation: Any) -> Any:
+    """Annotation of a field that holds values under names chosen by the user."""
+    return dict[str, annotation]
+
+
 def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
     """Annotation of a field that holds plug-ins under names chosen by the user."""
-    return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
+    return _of_names(_one_of(kind, registry.of_kind(kind), "kind")), field
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -180,10 +185,7 @@ def case_model(registry: Registry) -> type[Case]:
         __doc__=Case.__doc__,
         bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
-        sources=(
-            dict[str, _one_of("source", inflows, "kind")],  # type: ignore[misc]
-            Case.model_fields["sources"],
-        ),
+        sources=(_of_names(_one_of("source", inflows, "kind")), Case.model_fields["sources"]),
         sinks=_by_name(registry, "sink", Case.model_fields["sinks"]),
         scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),
         output=(output, Field(default={}, validate_default=True, description="what the run writes")),

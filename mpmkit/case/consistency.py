@@ -21,8 +21,8 @@ from .draining import drain_columns
 from .ending import Until
 from .measurement_rules import check_measurements
 from .model import Case, Material
-from .sources import check_inflows, check_mouths, source_columns
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .sources import check_inflows, check_mouths, source_columns
 from .state_variables import TAKEN, former_names, state_variables
 from .synonyms import nearest
 from .walls import NAME, check_walls

@@ -143,7 +143,12 @@ class Inflow(Model):
 
     kind: str = Field(description="name of the source")
     material: Material = Field(description="what comes in")
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = Body.model_fields["particles_per_cell"]
+    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
+        "1",
+        "particles in a full cell (a square or cubic number), or their number along each axis; "
+        "default: 2 along each axis",
+        default=None,
+    )
 
     source_class: ClassVar[type[Source]]
 
@@ -321,8 +326,11 @@ class Case(Model):
 
     @cached_property
     def height(self) -> float:
-        """Extent h of all bodies together along gravity, m; with sources, from their mouths to the end of
-        the domain that gravity pulls to."""
+        """Extent h of all bodies together along gravity, m.
+
+        With sources, also from their mouths to the end of the domain that gravity pulls to, and at least the
+        width of a mouth.
+        """
         bounds = [np.array(body.shape.bounds(self.space_)) for body in self.bodies]
         for mouth in self.mouths.values():
             centre, half = np.array(mouth.centre), np.array(mouth.half_width)
@@ -330,7 +338,8 @@ class Case(Model):
             bounds.append(np.array([centre - half, np.where(self._downwards > 0, upper, lower)]))
             bounds.append(np.array([centre + half, centre + half]))
         ends = np.array([np.sort(self._downwards * b, axis=0).sum(axis=1) for b in bounds])
-        return float(ends[:, 1].max() - ends[:, 0].min())
+        widths = [2 * max(mouth.half_width) for mouth in self.mouths.values()]
+        return max(float(ends[:, 1].max() - ends[:, 0].min()), *widths, 0.0)
 
     @cached_property
     def _downwards(self) -> np.ndarray:

@@ -93,8 +93,8 @@ def _check_section(where: str, name: str, case: Case) -> None:
         above = high > upper[a] + WHOLE * cell and not (cut[1] and a != mouth.axis)
         if below or above:
             raise ValueError(
-                f"{where}: its section reaches {axis} = {low if below else high:.9g} m, outside the grid, whose "
-                f"domain along {axis} is [{lower[a]:.9g}, {upper[a]:.9g}] m"
+                f"{where}: its section reaches {axis} = {low if below else high:.9g} m, outside the grid, "
+                f"whose domain along {axis} is [{lower[a]:.9g}, {upper[a]:.9g}] m"
             )
         inside = min(high, upper[a]) - max(low, lower[a])
         if a != mouth.axis and inside < THINNEST * spacing[a]:
@@ -106,8 +106,8 @@ def _check_section(where: str, name: str, case: Case) -> None:
     ahead = (upper if mouth.sign > 0 else lower)[mouth.axis]
     if (ahead - place) * mouth.sign < cell:
         raise ValueError(
-            f"{where}: its section at {axis} = {place:.9g} m has less than a cell before it; material comes in "
-            f"{'along' if mouth.sign > 0 else 'against'} {axis}, and the domain ends at {ahead:.9g} m"
+            f"{where}: its section at {axis} = {place:.9g} m has less than a cell before it; material comes "
+            f"in {'along' if mouth.sign > 0 else 'against'} {axis}, and the domain ends at {ahead:.9g} m"
         )
     side, end = ("min", lower) if mouth.sign > 0 else ("max", upper)
     face = case.grid.faces.get(f"{axis}_{side}", "open")
@@ -131,8 +131,8 @@ def check_inflows(case: Case) -> None:
             assert sound is not None
             if not fastest <= FASTEST * sound:
                 raise ValueError(
-                    f"{where}: material comes in at up to {fastest:.4g} m/s; it must be at most {FASTEST:g} of "
-                    f"the sound speed, which is {sound:.4g} m/s: use a larger section, a lower rate, or a "
+                    f"{where}: material comes in at up to {fastest:.4g} m/s; it must be at most {FASTEST:g} "
+                    f"of the sound speed, which is {sound:.4g} m/s: use a larger section, a lower rate, or a "
                     f"larger {where}.material.sound_speed"
                 )
             _check_path(where, name, case)
@@ -180,6 +180,6 @@ def _check_overlaps(where: str, name: str, case: Case) -> None:
             half = (np.abs(normal) * row.width / 2).sum(axis=1)
             if (distance < -ROUNDING * half - WHOLE * case.grid.cell_size).any():
                 raise ValueError(
-                    f"{where}: its section overlaps the wall '{wall_name}', by up to {-distance.min():.3g} m at "
-                    f"t = {begins:.4g} s; a source may touch a wall but not overlap it"
+                    f"{where}: its section overlaps the wall '{wall_name}', by up to {-distance.min():.3g} m "
+                    f"at t = {begins:.4g} s; a source may touch a wall but not overlap it"
                 )

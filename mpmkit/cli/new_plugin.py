@@ -22,6 +22,7 @@ KINDS = [
     "surface",
     "contact",
     "sink",
+    "source",
     "diagnostic",
     "particle_field",
 ]

@@ -28,7 +28,9 @@ class RateTable(BaseModel):
             )
         for before, after in pairwise(self.times):
             if after <= before:
-                raise ValueError(f"times has {after:g} s after {before:g} s; each must be above the one before")
+                raise ValueError(
+                    f"times has {after:g} s after {before:g} s; each must be above the one before"
+                )
         return self
 
 

@@ -77,7 +77,7 @@ class Source(Plugin):
     def spell(self, area: float, density: float) -> tuple[float, float]:
         """When it begins and ends, s; before and after, the section is as if it were not there.
 
-        Between them it holds what is at the mouth, also where it pushes nothing. If it ends, the length of the
-        rows is chosen such that a whole number of them has come in.
+        Between them it holds what is at the mouth, also where it pushes nothing. If it ends, the length of
+        the rows is chosen such that a whole number of them has come in.
         """
         return 0.0, math.inf

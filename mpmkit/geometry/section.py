@@ -31,9 +31,9 @@ def section(
 ) -> Section:
     """Particles that fill the part of a section within ``bounds``, m.
 
-    A rectangle gets a whole number of particles across, at about the given spacing, m, ``(dim,)``. A disc gets
-    the points of a square lattice around its middle that are in it, at a spacing with which their squares
-    have the area of the disc. So the column has the density of the material.
+    A rectangle gets a whole number of particles across, at about the given spacing, m, ``(dim,)``. A disc
+    gets the points of a square lattice around its middle that are in it, at a spacing with which their
+    squares have the area of the disc. So the column has the density of the material.
     """
     centre, half = np.array(mouth.centre, dtype=float), np.array(mouth.half_width, dtype=float)
     low, high = np.maximum(centre - half, bounds[0]), np.minimum(centre + half, bounds[1])

@@ -29,6 +29,7 @@ KINDS = {
     "surface": "surface",
     "contact": "contact",
     "sink": "sink",
+    "source": "source",
     "diagnostic": "diagnostic",
     "particle_field": "particle field",
 }

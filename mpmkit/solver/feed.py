@@ -174,7 +174,9 @@ class Feed:
         self._first = self._base.min(axis=0).astype(np.int64)
         size = self._base.max(axis=0) - self._first + shape.support
         self._shape = tuple(int(k) for k in size)
-        self._strides = (self._shape[1] * self._shape[2], self._shape[2], 1) if dim == 3 else (self._shape[1], 1, 1)
+        self._strides = (
+            (self._shape[1] * self._shape[2], self._shape[2], 1) if dim == 3 else (self._shape[1], 1, 1)
+        )
         self._tasks = np.zeros((1, 1, TASKS + 1), dtype=np.int64)
         self._tasks[0, 0, 1:] = n
 
@@ -205,7 +207,7 @@ class Feed:
             self._hoop, c.mass, c.velocity, c.affine, c.volume, c.stress, c.pressure, gravity,
             self._grid.cell_size, momentum, forces,
         )  # fmt: skip
-        return nodes[: -LANES]
+        return nodes[:-LANES]
 
     def map(self, momentum: bool, forces: bool) -> None:
         """Add the rows to the nodes, after the particles."""
@@ -247,13 +249,19 @@ class Feed:
 
     # --- What comes in
 
-    def enter(self, time: float, dt: float, particles: Particles) -> bool:
-        """Add the rows that are through the mouth at a time, s, after a step; return whether there are any."""
-        if time < self._begins or time - dt >= self._ends:
-            return False
-        through = math.floor(self.pushed(min(time, self._ends)) / self._length + 0.5 + AT_MOUTH)
-        if through <= self.rows:
-            return False
+    def due(self, time: float, dt: float) -> bool:
+        """Whether a row is through the mouth at a time, s, after a step."""
+        return time >= self._begins and time - dt < self._ends and self._through(time) > self.rows
+
+    def _through(self, time: float) -> int:
+        """Number of rows whose middle is through the mouth."""
+        return math.floor(self.pushed(min(time, self._ends)) / self._length + 0.5 + AT_MOUTH)
+
+    def enter(self, time: float, dt: float, particles: Particles) -> None:
+        """Add the rows that are through the mouth at a time, s, after a step."""
+        if not self.due(time, dt):
+            return
+        through = self._through(time)
         group = particles.groups[self._group]
         self.ratio = self._ratio_before(particles, time)
         new = self._rows(np.arange(self.rows, through), time, self.ratio)
@@ -263,7 +271,6 @@ class Feed:
         self.rows = through
         self.mass_in += float(new.mass.sum())
         particles.add(self._group, new)
-        return True
 
     def _ratio_before(self, particles: Particles, time: float) -> float:
         """Mean J of the material within a cell before the mouth; 1 if there is none."""

@@ -99,9 +99,7 @@ class Ledger:
         self.entries[OUT] += gone
         self._height += potential_energy(p, self._downwards) - height
 
-    def brought_in(
-        self, before: np.ndarray, height: float, p: Particles, mass: float, time: float
-    ) -> None:
+    def brought_in(self, before: np.ndarray, height: float, p: Particles, mass: float, time: float) -> None:
         """Record what came in through sources, ``mass``, given the amounts before."""
         self._mass_time += (time - self._changed) * self.mass
         self._changed = time

@@ -88,15 +88,21 @@ def _mass(source: Source) -> list[tuple[str, str]]:
     mass = source.results.series("total_mass")
     if mass is None:
         return []
-    lost = (mass[-1] - mass[0]) / mass[0]
+    comes_in = source.results.series("mass_in") is not None
     whole = {"axisymmetric": "of the whole body", "plane-strain": "of a slice 1 m thick"}
     of = whole.get(source.space.name, "of the part that is simulated")
-    change = "unchanged" if abs(lost) < 1e-9 else f"changed by {percent(lost)}"
-    found = [("Mass", f"{number(float(mass[0]), 4)} kg {of}; {change} from start to end")]
+    if comes_in:
+        first, last = (f"{number(float(mass[row]), 4)} kg" for row in (0, -1))
+        found = [("Mass", f"{first} at the start, {last} at the end, {of}")]
+    else:
+        lost = (mass[-1] - mass[0]) / mass[0]
+        change = "unchanged" if abs(lost) < 1e-9 else f"changed by {percent(lost)}"
+        found = [("Mass", f"{number(float(mass[0]), 4)} kg {of}; {change} from start to end")]
     for name, said in (("mass_in", "put in by sources"), ("mass_out", "taken out by sinks")):
         values = source.results.series(name)
         if values is not None and values[-1]:
-            found.append((f"Mass {said}", f"{number(float(values[-1]), 4)} kg"))
+            names = " and ".join(source.results.case.get("sources" if name == "mass_in" else "sinks", {}))
+            found.append((f"Mass {said}", f"{number(float(values[-1]), 4)} kg ({names})"))
     return found
 
 

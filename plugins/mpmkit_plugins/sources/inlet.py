@@ -26,7 +26,11 @@ class Inlet(Source):
         "m", "lower corner of the section", default=None, min_length=2, max_length=3
     )
     upper: list[float] | None = quantity(
-        "m", "upper corner; it equals the lower one along the normal", default=None, min_length=2, max_length=3
+        "m",
+        "upper corner; it equals the lower one along the normal",
+        default=None,
+        min_length=2,
+        max_length=3,
     )
     centre: list[float] | None = quantity(
         "m", "middle of a disc, only in 3d", default=None, min_length=3, max_length=3
@@ -43,11 +47,13 @@ class Inlet(Source):
     @model_validator(mode="after")
     def _is_whole(self) -> Inlet:
         if (self.velocity is None) == (self.flux is None):
-            have = "both" if self.flux is not None else "neither"
-            raise ValueError(f"it has {have} velocity and flux; it must have one of them" if self.flux is not None
-                             else "it has no velocity and no flux; it must have one of them")
-        sections = [self.face is not None, self.lower is not None or self.upper is not None,
-                    self.centre is not None or self.radius is not None]
+            have = "no velocity and no flux" if self.flux is None else "velocity and flux"
+            raise ValueError(f"it has {have}; it must have one of them")
+        sections = [
+            self.face is not None,
+            self.lower is not None or self.upper is not None,
+            self.centre is not None or self.radius is not None,
+        ]
         if sum(sections) != 1:
             raise ValueError(
                 "its section must be given by one of: face; lower, upper and direction; centre, radius and "
@@ -70,7 +76,11 @@ class Inlet(Source):
     def problem(self, space: Space, domain: tuple[np.ndarray, np.ndarray]) -> str | None:
         if self.face is not None:
             allowed = [name for name in space.faces if not (space.radial and name.startswith("r"))]
-            return None if self.face in allowed else f"face is '{self.face}'; it must be one of {', '.join(allowed)}"
+            return (
+                None
+                if self.face in allowed
+                else f"face is '{self.face}'; it must be one of {', '.join(allowed)}"
+            )
         axes = [axis for axis in space.axes if axis != "r"]
         allowed = [sign + axis for axis in axes for sign in ("", "-")]
         if self.direction not in allowed:
@@ -87,9 +97,7 @@ class Inlet(Source):
         for a, name in enumerate(space.axes):
             low, high = self.lower[a], self.upper[a]
             if a == axis and low != high:
-                return (
-                    f"lower is {low:g} and upper {high:g} along {name}, the direction; they must be equal there"
-                )
+                return f"lower is {low:g} and upper {high:g} along {name}, the direction; they must be equal"
             if a != axis and not low < high:
                 return f"lower is {low:g} and upper {high:g} along {name}; lower must be below upper"
         return None
