@@ -24,7 +24,8 @@ CASES = Path(__file__).parents[1] / "cases"
 MADE_OF_THE_CASE = {
     "Simulation": {"case", "grid", "measures", "_first_sound_speeds", "blaming"},
     "Group": {"law", "equation_of_state"},
-    "SceneOperations": {"scheme", "grid", "cell_size", "gravity", "radial", "_scatter", "_gather"},
+    "SceneOperations": {"scheme", "grid", "cell_size", "radial", "_scatter", "_gather"},
+    "Forces": {"_forces", "_gravity", "_lower", "_uniform", "_of_velocity"},
     "Window": {"grid"},
     "Sorting": {"grid", "_locate", "_periodic", "_walls", "_walled"},
     "ActiveNodes": {"faces"},
