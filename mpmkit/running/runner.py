@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
-from ..errors import CaseError, GuardStop, OutputError, Undrawn, reason
+from ..errors import CaseError, GuardStop, Interrupted, OutputError, Undrawn, reason
 from ..kernels.environment import require_threads
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
@@ -177,7 +177,9 @@ def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str
 def _execute(
     recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
 ) -> None:
-    """Run to the end in a directory, and draw the pictures, even if a guard stopped the run.
+    """Run to the end in a directory, and draw the report, even if a guard stopped the run.
+
+    An interrupted run gets its page without the pictures: they take longer, and it may be continued.
 
     Raises:
         Undrawn: the run has finished, but the drawing of its pictures was interrupted.
@@ -191,6 +193,9 @@ def _execute(
             _report(recorder)
         except Undrawn as undrawn:
             LOGGER.warning("%s", undrawn)
+        raise
+    except Interrupted:
+        _page(recorder)
         raise
     _report(recorder, hurry)
 
@@ -215,3 +220,18 @@ def _report(recorder: Recorder, hurry: bool = False) -> None:
         ) from None
     except Exception as error:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
+
+
+def _page(recorder: Recorder) -> None:
+    """Write the page of an interrupted run; a second interrupt, or a failure, leaves it out."""
+    directory = recorder.directory
+    if not recorder.simulation.case.output.report or directory is None:
+        return
+    try:
+        from ..report.page import write_page
+
+        LOGGER.info("page: %s", write_page(directory.path))
+    except KeyboardInterrupt:
+        LOGGER.warning("the page was not written; write it with: mpmkit report %s", directory.path)
+    except Exception as error:
+        LOGGER.warning("the page was not written: %s", reason(error), exc_info=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 from ...output import RunDirectory
 from ...output.atomic import cannot_write, replacing
 from ...version import __version__
-from . import balance, flow_curves, headline, histories, numerics, player, repeat
+from . import balance, flow_curves, headline, histories, measured, numerics, player, repeat, wall_forces
 from .assembled import assembled
 from .section import Section
 from .source import Source, read_source
@@ -17,7 +17,7 @@ __all__ = ["MOST_BYTES", "page_of", "write_page"]
 MOST_BYTES = 3_000_000
 """Largest size of a page."""
 BEFORE = (headline,)
-BEHIND = (histories, flow_curves, balance, numerics, repeat)
+BEHIND = (histories, measured, flow_curves, balance, wall_forces, numerics, repeat)
 """Sections before and after the player. The player gets the rest of the allowed size. To add a section, write
 a module and add it here."""
 
