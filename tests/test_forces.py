@@ -13,6 +13,7 @@ import xarray
 import mpmkit
 from mpmkit.case import parse_case
 from mpmkit.case.forewarnings import forewarnings
+from mpmkit.case.plausibility import implausible
 from mpmkit.case.resolved import resolved
 from mpmkit.contracts import BodyForce, GeneralisedNewtonianLaw
 from mpmkit.errors import CaseError, GuardStop
@@ -313,6 +314,12 @@ def test_plan_offers_no_quarter_of_a_scene_with_forces():
 def test_a_floor_is_missed_under_a_table_too():
     case = a_case({"tilt": TILT}, gravity=None, until=2.0)
     assert any("has no floor" in sentence for sentence in forewarnings(case))
+
+
+def test_a_stop_in_no_time_is_noticed():
+    said = " ".join(implausible(a_case({"s": SHORT})))
+    assert "forces.s accelerates by up to 5e+06 m/s²; usual is up to 1000 m/s²" in said
+    assert not any("forces.s" in text for text in implausible(a_case({"v": VIBRATES})))
 
 
 def test_it_goes_on_with_the_same_bits(tmp_path):

@@ -218,10 +218,16 @@ MOULDED = {
 }
 
 
+SHAKEN = {
+    "shake": {"kind": "oscillation", "amplitude": [0, 0.0005], "frequency": 30},
+    "turn": {"kind": "centrifugal", "rate": 2.0},
+}
+
+
 @pytest.mark.parametrize("steps", [37, 5 * CONTROL_INTERVAL])
 def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
-    """A mould that is lifted off, and a plane: their places, what they gave, what contacts remember."""
-    changes = [*FLOWING, f"walls={json.dumps(MOULDED)}"]
+    """A mould that is lifted off, and a plane, and two forces: their places, what they gave, what contacts remember."""
+    changes = [*FLOWING, f"walls={json.dumps(MOULDED)}", f"forces={json.dumps(SHAKEN)}"]
     case = load_case(CASES / "slump_fast.json", changes)
     simulation, recorder, watch = a_run(case, tmp_path)
     recorder.record()
