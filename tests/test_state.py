@@ -226,7 +226,7 @@ SHAKEN = {
 
 @pytest.mark.parametrize("steps", [37, 5 * CONTROL_INTERVAL])
 def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
-    """A mould that is lifted off, a plane, and forces: their places, what they gave, what contacts remember."""
+    """A mould that is lifted off, a plane, and forces: their places, what they gave, what is remembered."""
     changes = [*FLOWING, f"walls={json.dumps(MOULDED)}", f"forces={json.dumps(SHAKEN)}"]
     case = load_case(CASES / "slump_fast.json", changes)
     simulation, recorder, watch = a_run(case, tmp_path)
