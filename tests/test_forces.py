@@ -194,54 +194,6 @@ def test_the_history_has_the_work_and_power_by_name(tmp_path):
     assert (history.potential_energy == 0).all()
 
 
-# --- The same scene, seen otherwise
-
-STIFF = {"law": "neo-hookean", "density": 1000, "youngs_modulus": 5e4, "poisson_ratio": 0.3}
-SLIDES = {
-    "until": 1.2,
-    "grid": {"cell_size": 0.0125, "domain": {"x": [-0.1, 0.5], "z": [-0.15, 0.2]}},
-    "bodies": [{"shape": {"kind": "box", "lower": [-0.05, 0.0], "upper": [0.05, 0.1]}, "material": STIFF}],
-}
-RATE, LATE = -0.1, 1.2
-"""rad/s, s"""
-FLOOR = {
-    "kind": "body",
-    "shape": {"kind": "box", "lower": [-0.2, -0.1], "upper": [0.6, 0]},
-    "side": "outside",
-}
-
-
-def slid(simulation, angle):
-    """Place along the floor, m, speed, m/s, and height at the end, for a floor at an angle."""
-    while simulation.time < LATE:
-        simulation.advance()
-    p = simulation.particles
-    along = np.array([math.cos(angle), math.sin(angle)])
-    place = p.mass @ (p.position + simulation.grid.lower) / p.mass.sum()
-    return place @ along, mean_velocity(simulation) @ along, place @ [-along[1], along[0]]
-
-
-@pytest.mark.slow
-def test_gravity_that_turns_is_a_floor_that_turns():
-    """A block on a floor that is tilted: by gravity and inertia as the floor sees them, and by the floor.
-
-    At the start the block is at rest in the laboratory, and moves by -ω × r relative to the floor.
-    """
-    forces = {
-        "tilt": {"kind": "turning-gravity", "vector": [0, -9.81], "rate": -RATE},
-        "frame": {"kind": "rotating-frame", "point": [0, 0], "rate": RATE},
-    }
-    still = {"floor": {"surface": FLOOR, "contact": "slip"}}
-    turns = {"kind": "rotation", "point": [0, 0], "rate": RATE}
-    moved = {"floor": {"surface": FLOOR | {"motion": turns}, "contact": "slip"}}
-    bodies = [SLIDES["bodies"][0] | {"velocity": [0.05 * RATE, 0]}]
-    x, v, _ = slid(Simulation(a_case(forces, gravity=None, walls=still, **SLIDES | {"bodies": bodies})), 0.0)
-    y, w, high = slid(Simulation(a_case({}, gravity=None, walls=moved, **SLIDES)), RATE * LATE)
-    assert v == pytest.approx(9.81 * abs(RATE) * LATE**2 / 2 + 0.05 * RATE, rel=0.01)
-    assert w + RATE * high == pytest.approx(v, rel=0.01)
-    assert y == pytest.approx(x, rel=0.01)
-
-
 # --- The scene follows
 
 
