@@ -121,7 +121,7 @@ def test_even_particles_stay_where_they_are(space):
     simulation.operations.begin()
     p.velocity_gradient[:, 0, 1] = 3.0
     before = {name: array.copy() for name, array in p.arrays().items()}
-    simulation.operations.stage.shear, simulation.operations.stage.time = 1.0, 0.3
+    simulation.operations.stage.shear, simulation.operations.stage.elapsed = 1.0, 0.3
     simulation.operations.stage.redistribute_if_due(
         simulation.operations.window, simulation.operations.sorting
     )
@@ -159,7 +159,7 @@ def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
             lambda ops: spread.append(np.std(ops.places.at_particles(ops.places.crowding()))),
         )
         stage.redistribution = even
-        stage.shear = stage.time = 0.1
+        stage.shear = stage.elapsed = 0.1
         assert stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
         simulation.operations._sort()
     assert spread[-1] < 0.4 * spread[0]
@@ -193,7 +193,7 @@ def test_material_comes_to_fill_the_room_there_is():
     p.volume *= 1.03  # too much of it
     p.volume_ratio *= 1.03
     stage = simulation.operations.stage
-    stage.shear = stage.time = 0.5
+    stage.shear = stage.elapsed = 0.5
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-2 * 0.5 * np.log(1.03)), rtol=1e-10)
 
@@ -205,7 +205,7 @@ def test_a_solid_keeps_its_places_and_boxes():
     solid = simulation.particles.groups[1].part
     before = {name: array[solid].copy() for name, array in p.arrays().items()}
     stage = simulation.operations.stage
-    stage.shear = stage.time = 0.3
+    stage.shear = stage.elapsed = 0.3
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     for name in ("position", "box", "volume_ratio", "volume", "quadrature"):
         np.testing.assert_array_equal(getattr(p, name)[solid], before[name], err_msg=name)
@@ -312,9 +312,9 @@ def test_even_works_with_boxes_that_the_weights_do_not_see(shape):
     p = disorder(simulation)
     done = 0
     for _ in range(60):
-        before = simulation.operations.stage.time
+        before = simulation.operations.stage.elapsed
         simulation.advance()
-        done += simulation.operations.stage.time < before
+        done += simulation.operations.stage.elapsed < before
     simulation.check()
     assert done > 0
     np.testing.assert_allclose(p.box, np.sqrt(p.volume)[:, None].repeat(2, axis=1) / 2, rtol=1e-2)

@@ -59,6 +59,10 @@ class Redistributing(Protocol):
     places: Lattice
     """A lattice as fine as the particles are apart."""
 
+    @property
+    def time(self) -> float:
+        """Time at the start of the step, s."""
+
     def cells(self) -> Cells:
         """The cells of the grid, with the boxes as they are now."""
 

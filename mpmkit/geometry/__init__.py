@@ -16,6 +16,7 @@ from .moving import MovingSolid
 from .overlap import shared_volume
 from .sampling import Sample, expected_count, sample
 from .sphere import Sphere
+from .turning import axis_problem, generator, rotation
 
 AnyShape = Annotated[Frustum | Cylinder | Box | Sphere | Mesh, Field(discriminator="kind")]
 """Any shape in a case file; its ``kind`` selects the class."""
@@ -43,8 +44,11 @@ __all__ = [
     "Shape",
     "Solid",
     "Sphere",
+    "axis_problem",
     "contour",
     "expected_count",
+    "generator",
+    "rotation",
     "sample",
     "shared_volume",
 ]
