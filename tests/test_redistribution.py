@@ -229,6 +229,16 @@ def test_material_comes_to_fill_the_room_there_is():
     np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-2 * 0.5 * np.log(1.03)), rtol=1e-10)
 
 
+def test_only_the_flow_carries_material_out_of_an_open_face():
+    """There a sink takes it, or a guard stops the run; no shift of places may bring that about."""
+    simulation = filled("plane-strain", {"plane-strain": {"z_min": "stick"}})
+    simulation.operations.begin()
+    redistribute(simulation, lambda ops: ops.shift(np.full((len(simulation.particles), 2), 0.6 * DX)))
+    top = simulation.grid.extent
+    assert (simulation.particles.position <= top).all()
+    assert (simulation.particles.position.max(axis=0) == top).all()
+
+
 def test_a_solid_keeps_its_places_and_boxes():
     simulation = filled("plane-strain", SEAMED, materials=(FLUID, RUBBER))
     p = disorder(simulation)
