@@ -24,6 +24,7 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
     for wall in case.walls.values():
         used += [("surface", wall.surface), ("contact", wall.contact)]
     used += [("source", one.source) for one in case.sources.values()]
+    used += [("body_force", force) for force in case.forces.values()]
     used += [("sink", sink) for sink in case.sinks.values()]
     used += [("diagnostic", diagnostic) for diagnostic in case.output.diagnostics.values()]
     used += [("particle_field", field) for field in case.output.fields.values()]

@@ -82,6 +82,8 @@ class Kinematics:
     age: np.ndarray | None = None
     """``(n,)``, time since the material came in through a source, or since the start, s, if the law asks for
     it."""
+    time: float = 0.0
+    """Time at the start of the step, s."""
 
 
 def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:

@@ -182,7 +182,7 @@ class Feed:
 
     def _find_nodes(self, time: float, active: np.ndarray) -> None:
         """Which nodes of the block particles reach, and which of them the column carries along."""
-        mapped = self._map(momentum=True, forces=False)
+        mapped = self._map(momentum=True, forces=False, acceleration=np.zeros((1, self._grid.dim)))
         number = np.indices(self._shape).reshape(len(self._shape), -1).T + self._first
         inside = number - self._window.lower
         held = ((inside >= 0) & (inside < np.array(self._window.shape[: self._grid.dim]))).all(axis=1)
@@ -198,23 +198,23 @@ class Feed:
         self._momentum = mapped[held, 1 : 1 + self._grid.dim]
         self._force = np.zeros_like(self._momentum)
 
-    def _map(self, momentum: bool, forces: bool) -> np.ndarray:
+    def _map(self, momentum: bool, forces: bool, acceleration: np.ndarray) -> np.ndarray:
         """What the rows give to the nodes of their block, ``(nodes, NODE)``."""
-        c, gravity = self._column, self._case.gravity_vector
+        c = self._column
         nodes = np.zeros((int(np.prod(self._shape)) + LANES, NODE))
         self._scatter(
             nodes, self._strides, self._first, self._tasks, self._base, self._weight, self._gradient,
-            self._hoop, c.mass, c.velocity, c.affine, c.volume, c.stress, c.pressure, gravity,
+            self._hoop, c.mass, c.velocity, c.affine, c.volume, c.stress, c.pressure, acceleration,
             self._grid.cell_size, momentum, forces,
         )  # fmt: skip
         return nodes[:-LANES]
 
-    def map(self, momentum: bool, forces: bool) -> None:
-        """Add the rows to the nodes, after the particles."""
+    def map(self, momentum: bool, forces: bool, acceleration: np.ndarray) -> None:
+        """Add the rows to the nodes, after the particles; they feel an acceleration, m/s², ``(1, dim)``."""
         if not self._acts:
             return
         dim = self._grid.dim
-        mapped = self._map(momentum, forces)[self._local]
+        mapped = self._map(momentum, forces, acceleration)[self._local]
         if forces:
             self._force = mapped[:, 1 + dim : 1 + 2 * dim]
         if momentum:

@@ -106,6 +106,8 @@ class Particles:
     age: np.ndarray
     """(n,) time since a particle came in, or since the start, s"""
     groups: list[Group] = field(default_factory=list)
+    time: float = 0.0
+    """s, at the start of the present step"""
     numbers_given: int = 0
     """Count of particle numbers used so far; numbers of removed particles are not used again"""
 
@@ -202,6 +204,7 @@ class Particles:
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
             age=self.age[part] if group.law.needs_age else None,
+            time=self.time,
         )
 
     def wave_speed(self, group: Group) -> float:

@@ -23,6 +23,7 @@ def follow_flow(
     particles: Particles,
     grid: Grid,
     gravity: np.ndarray,
+    forces: np.ndarray,
     first: list[float | None],
     elapsed: float,
     more_comes: bool = False,
@@ -35,6 +36,7 @@ def follow_flow(
         particles: their sound speeds, volume ratios and pressures are changed.
         grid: tells which axes are periodic.
         gravity: ``(dim,)``, m/s².
+        forces: ``(dim,)``, m/s², upper bounds of what other forces are along each axis.
         first: c of each material at the start, m/s.
         elapsed: time since the last change, s.
         more_comes: whether sources will bring in more; c is then at least that of the start, which knows
@@ -43,8 +45,10 @@ def follow_flow(
     if not len(particles) or all(group.mach is None for group in particles.groups):
         return
     slowest = 1.0 if more_comes else SLOWEST
-    fastest = math.sqrt(2 * largest_energy(particles, grid, gravity))
-    length = float(np.ptp(particles.position, axis=0).max())
+    extent = np.ptp(particles.position, axis=0)
+    length = float(extent.max())
+    of_forces = float(forces @ np.where(grid.periodic, 0.0, extent))
+    fastest = math.sqrt(2 * (largest_energy(particles, grid, gravity) + of_forces))
     for group, at_start in zip(particles.groups, first, strict=True):
         if group.mach is not None and at_start is not None:
             speed = group.sound_speed

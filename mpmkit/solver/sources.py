@@ -73,10 +73,11 @@ class Sources:
         for feed in self.feeds:
             feed.begin(time, dt, self._particles, sorting.active.mask)
 
-    def map(self, momentum: bool, forces: bool) -> None:
-        """Add the columns to the nodes."""
+    def map(self, momentum: bool, forces: bool, acceleration: np.ndarray) -> None:
+        """Add the columns to the nodes; they feel the mean ``acceleration``, m/s², ``(k, dim)``."""
+        mean = acceleration.mean(axis=0, keepdims=True) if self.feeds else acceleration
         for feed in self.feeds:
-            feed.map(momentum, forces)
+            feed.map(momentum, forces, mean)
 
     def carry(self, dt: float | None = None) -> None:
         """Give the nodes behind the mouths the velocity of their columns."""
