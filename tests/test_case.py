@@ -96,7 +96,7 @@ BAD = [
     (f"{MATERIAL}.density", "2000", 'density is "2000"; it must be a number above 0, in kg/m^3'),
     (f"{MATERIAL}.density", True, "density is true; it must be a number above 0, in kg/m^3"),
     (f"{MATERIAL}.density", None, "density is null; it must be a number above 0"),
-    ("bodies", {}, "bodies is {}; it must be a list of one or more objects"),
+    ("bodies", {}, "bodies is {}; it must be a list of objects"),
     ("bodies", [], "bodies is []; it must be a list of one or more objects"),
     (
         "bodies.0",

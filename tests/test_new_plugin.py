@@ -17,6 +17,7 @@ LEAST = {
     "contact": 11,
     "body_force": 14,
     "sink": 10,
+    "source": 8,
     "particle_field": 9,
 }
 """Tests of a distribution: those of the kit, and one of the case."""

@@ -19,6 +19,7 @@ from mpmkit.running.runner import resume
 from mpmkit.solver.ledger import ENERGY, IN, MASS, REST
 from mpmkit.solver.memory import expected_particles
 from mpmkit.solver.simulation import Simulation
+from mpmkit.solver.stresses import mean_pressure
 
 SPEED, SOUND, DENSITY = 0.2, 5.0, 1000.0
 RUBBER = {"law": "neo-hookean", "density": 1000, "youngs_modulus": 1e4, "poisson_ratio": 0.3}
@@ -237,7 +238,7 @@ def test_plan_and_memory_count_what_will_come_in():
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"sources": {}, "bodies": []}, "bodies is empty; a case without sources needs at least one body"),
+        ({"sources": {}, "bodies": []}, "bodies is []; it must be a list of one or more objects, unless"),
         ({"sources": pump(face="r_min")}, "sources.pump: face is 'r_min'; it must be one of x_min, x_max"),
         ({"sources": pump(face="z_min")}, "its section is at the face z_min, which is"),
         ({"sources": pump(flux=0.1)}, "it has velocity and flux; it must have one of them"),
@@ -274,3 +275,56 @@ def test_what_is_wrong_is_said(changes, sentence):
     with pytest.raises(CaseError) as error:
         case(**changes)
     assert sentence in str(error.value)
+
+
+RADIUS, MEAN, YIELD, PLASTIC = 0.0125, 0.1, 200.0, 10.0
+
+
+def buckingham_reiner():
+    """Pressure gradient, Pa/m, of a Bingham fluid in a tube at a mean velocity."""
+    low, high = 2 * YIELD / RADIUS, 1e7
+    for _ in range(100):
+        gradient = (low + high) / 2
+        part = 2 * YIELD / (gradient * RADIUS)
+        velocity = gradient * RADIUS**2 / (8 * PLASTIC) * (1 - 4 / 3 * part + part**4 / 3)
+        low, high = (gradient, high) if velocity < MEAN else (low, gradient)
+    return gradient
+
+
+@pytest.mark.slow
+def test_a_bingham_fluid_in_a_tube_needs_the_pressure_of_buckingham_and_reiner():
+    """A plug comes into a tube with a wall that holds it, and develops; 10 cells across the radius."""
+    paste = {
+        "law": "bingham-evp",
+        "density": 2000,
+        "yield_stress": YIELD,
+        "plastic_viscosity": PLASTIC,
+        "shear_modulus": 20000,
+        "sound_speed": 20,
+    }
+    shape = {"kind": "cylinder", "radius": RADIUS, "height": 0.05}
+    simulation = Simulation(
+        case(
+            space="axisymmetric",
+            until=0.15,
+            grid={
+                "cell_size": RADIUS / 10,
+                "domain": {"r": [0, RADIUS], "z": [0, 0.05]},
+                "faces": {"r_max": "stick"},
+            },
+            bodies=[{"shape": shape, "velocity": [0, MEAN], "material": paste}],
+            sources=pump(face="z_min", velocity=MEAN, material=paste),
+            sinks={"end": {"kind": "face", "face": "z_max"}},
+        )
+    )
+    ends, means = np.arange(0.01375, 0.0375, 0.0025), []
+    while simulation.time < 0.15:
+        simulation.advance()
+        if simulation.steps % 20 == 0 and simulation.time > 0.08:
+            p, z = simulation.particles, simulation.particles.position[:, 1]
+            where = np.digitize(z, ends)
+            volume = np.bincount(where, p.volume, len(ends) + 1)
+            means.append((np.bincount(where, p.volume * mean_pressure(p), len(ends) + 1) / volume)[1:-1])
+    slope = -np.polyfit((ends[1:] + ends[:-1]) / 2, np.mean(means, axis=0), 1)[0]
+    assert buckingham_reiner() == pytest.approx(93.5e3, rel=1e-3)
+    assert slope == pytest.approx(buckingham_reiner(), rel=0.03)

@@ -48,7 +48,10 @@ def check(case: Case) -> None:
     _check_domain(case)
     _check_faces(case)
     if not case.bodies and not case.sources:
-        raise ValueError("bodies is empty; a case without sources needs at least one body")
+        given = "[]" if "bodies" in case.model_fields_set else "missing"
+        raise ValueError(
+            f"bodies is {given}; it must be a list of one or more objects, unless the case has sources"
+        )
     for name, inflow in case.sources.items():
         _check_particles_per_cell(f"sources.{name}.particles_per_cell", inflow.particles_per_cell, case)
     check_mouths(case)

@@ -62,13 +62,12 @@ def history_fields(scene: SceneView) -> dict[str, np.ndarray]:
     """
     case, p = scene.case, scene.particles
     names = case.output.particle_history
-    others = [name for name in names if name not in PARTICLE_FIELDS]
+    former = former_names(case)
+    own = [name for name in names if name in PARTICLE_FIELDS and name not in former | case.output.fields]
+    others = [name for name in names if name not in own]
     known = state_fields(p) | added_fields(scene, others) if others else {}
-    former = former_names(case) if others else {}
     return {
-        name: PARTICLE_FIELDS[name](p, scene.grid)
-        if name in PARTICLE_FIELDS
-        else known[former.get(name, name)]
+        name: PARTICLE_FIELDS[name](p, scene.grid) if name in own else known[former.get(name, name)]
         for name in names
     }
 

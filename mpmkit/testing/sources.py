@@ -96,8 +96,7 @@ def fastest(source: Source) -> None:
     """The speed of the column between two times is at most ``fastest`` of them."""
     times = _times(source)
     lengths = np.array([_pushed(source, float(time)) for time in times])
-    moved = [np.atleast_1d(source.moved(float(time))) for time in times]
-    places = np.array([np.broadcast_to(place, np.broadcast_shapes(place.shape, (2,))) for place in moved])
+    places = np.array([np.atleast_1d(source.moved(float(time))) for time in times], dtype=float)
     steps = np.diff(times)
     # The normal may be along any axis: the column is as fast as its two parts differ at the least.
     along, across = np.diff(lengths) / steps, np.linalg.norm(np.diff(places, axis=0), axis=1) / steps
