@@ -24,7 +24,8 @@ CASES = Path(__file__).parents[1] / "cases"
 MADE_OF_THE_CASE = {
     "Simulation": {"case", "grid", "measures", "_first_sound_speeds", "blaming"},
     "Group": {"law", "equation_of_state"},
-    "SceneOperations": {"scheme", "grid", "cell_size", "gravity", "radial", "_scatter", "_gather"},
+    "SceneOperations": {"scheme", "grid", "cell_size", "radial", "_scatter", "_gather"},
+    "Forces": {"_forces", "_gravity", "_lower", "_uniform", "_of_velocity"},
     "Window": {"grid"},
     "Sorting": {"grid", "_locate", "_periodic", "_walls", "_walled"},
     "ActiveNodes": {"faces"},
@@ -217,10 +218,16 @@ MOULDED = {
 }
 
 
+SHAKEN = {
+    "shake": {"kind": "oscillation", "amplitude": [0, 0.0005], "frequency": 30},
+    "turn": {"kind": "centrifugal", "rate": 2.0},
+}
+
+
 @pytest.mark.parametrize("steps", [37, 5 * CONTROL_INTERVAL])
 def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
-    """A mould that is lifted off, and a plane: their places, what they gave, what contacts remember."""
-    changes = [*FLOWING, f"walls={json.dumps(MOULDED)}"]
+    """A mould that is lifted off, a plane, and forces: their places, what they gave, what is remembered."""
+    changes = [*FLOWING, f"walls={json.dumps(MOULDED)}", f"forces={json.dumps(SHAKEN)}"]
     case = load_case(CASES / "slump_fast.json", changes)
     simulation, recorder, watch = a_run(case, tmp_path)
     recorder.record()

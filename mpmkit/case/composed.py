@@ -162,6 +162,7 @@ def case_model(registry: Registry) -> type[Case]:
         __doc__=Case.__doc__,
         bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
+        forces=_by_name(registry, "body_force", Case.model_fields["forces"]),
         sinks=_by_name(registry, "sink", Case.model_fields["sinks"]),
         scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),
         output=(output, Field(default={}, validate_default=True, description="what the run writes")),

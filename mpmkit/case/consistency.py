@@ -19,6 +19,7 @@ from .allowed import one_of, shown
 from .diagnostics import diagnostic_columns
 from .draining import drain_columns
 from .ending import Until
+from .forces import check_forces, check_symmetry_of_forces, force_columns
 from .measurement_rules import check_measurements
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
@@ -42,10 +43,10 @@ def check(case: Case) -> None:
     ValueError.
     """
     _check_vector("gravity", case.gravity, case)
-    if case.space_.radial and case.gravity_vector[0] != 0:
-        raise ValueError(f"gravity is {case.gravity}; along r it must be 0 in an axisymmetric scene")
+    check_forces(case)
     _check_domain(case)
     _check_faces(case)
+    check_symmetry_of_forces(case)
     for number, body in enumerate(case.bodies):
         where = f"bodies.{number}"
         for field, vector in _velocity_vectors(body):
@@ -102,7 +103,7 @@ def _check_measured(case: Case) -> None:
 
 
 def _check_until(case: Case) -> None:
-    columns = [*COLUMNS, *drain_columns(case), *diagnostic_columns(case)]
+    columns = [*COLUMNS, *force_columns(case), *drain_columns(case), *diagnostic_columns(case)]
     scalars = [column.name for column in columns if not column.component and not column.dimension]
     for name in case.until.variables if isinstance(case.until, Until) else ():
         if name not in scalars:
@@ -231,7 +232,7 @@ def _check_sound_speed(field: str, material: Material, case: Case) -> None:
             f"{field} is a Mach number, but gravity is {case.gravity} and nothing moves; "
             "give the speed itself, in m/s"
         )
-    elif isinstance(material.sound_speed, SoundSpeedFactor) and not case.gravity_vector.any():
+    elif isinstance(material.sound_speed, SoundSpeedFactor) and case.energy_of_fall == 0:
         raise ValueError(
             f"{field} is a factor of √(2 g h), but gravity is {case.gravity}; give the speed itself, in m/s"
         )

@@ -73,7 +73,7 @@ def _needless(case: Case) -> Iterator[str]:
 
 def _falls_out(case: Case) -> Iterator[str]:
     """Bodies without support that gravity moves to an open face before the end."""
-    g = case.gravity_vector
+    g = case.gravity_at_start
     if not g.any():
         return
     axis = int(np.argmax(np.abs(g)))
@@ -115,7 +115,7 @@ def _is_a_sink(case: Case, axis: int, upper: bool) -> bool:
 
 def _hangs(case: Case) -> Iterator[str]:
     """Bodies that gravity or their own motion would move away from a symmetry face, which holds them."""
-    g = case.gravity_vector
+    g = case.gravity_at_start
     for axis in range(case.space_.dim):
         for upwards in (False, True):
             side = _side(case, axis, upwards)
@@ -140,7 +140,11 @@ def _swings_off(case: Case) -> Iterator[str]:
     """Bodies that a standing wave moves away from a slip wall, which does not pull, without weight on it."""
     for number, body in enumerate(case.bodies):
         fluid = body.material.constitutive_law.uses_equation_of_state
-        if body.velocity is None or isinstance(body.velocity, list) or (fluid and case.gravity_vector.any()):
+        if (
+            body.velocity is None
+            or isinstance(body.velocity, list)
+            or (fluid and case.gravity_at_start.any())
+        ):
             continue
         for axis in (axis for axis, size in enumerate(body.velocity.amplitude) if size):
             for upwards in (False, True):
@@ -192,13 +196,13 @@ def _touching(case: Case) -> Iterator[str]:
 def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
-        return bool(case.gravity_vector.any()) or a.velocity is not None or b.velocity is not None
+        return bool(case.gravity_at_start.any()) or a.velocity is not None or b.velocity is not None
     relative = (_velocity(case, b) - _velocity(case, a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
-    if not case.gravity_vector.any():
+    if not case.gravity_at_start.any():
         return False
-    axis = int(np.argmax(np.abs(case.gravity_vector)))
+    axis = int(np.argmax(np.abs(case.gravity_at_start)))
     return _is_below(case, a, b, axis) or _is_below(case, b, a, axis)
 
 
@@ -217,7 +221,7 @@ def _is_below(case: Case, lower: Body, upper: Body, axis: int) -> bool:
     others = [a for a in range(case.space_.dim) if a != axis]
     over = all(low_a[a] < high_b[a] and low_b[a] < high_a[a] for a in others)
     tolerance = 1e-6 * case.grid.cell_size
-    if case.gravity_vector[axis] < 0:
+    if case.gravity_at_start[axis] < 0:
         return bool(over and low_b[axis] >= high_a[axis] - tolerance)
     return bool(over and high_b[axis] <= low_a[axis] + tolerance)
 
@@ -239,7 +243,7 @@ def _has_a_wall_below(case: Case, body: Body, axis: int) -> bool:
     if not case.walls:
         return False
     (lower, upper), (least, most) = _bounds(case, body), case.domain_bounds
-    if case.gravity_vector[axis] < 0:
+    if case.gravity_at_start[axis] < 0:
         lower[axis], upper[axis] = least[axis], lower[axis]
     else:
         lower[axis], upper[axis] = upper[axis], most[axis]

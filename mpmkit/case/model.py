@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
-from ..contracts import ConstitutiveLaw, Contact, EquationOfState, Sink, Surface, quantity
+from ..contracts import BodyForce, ConstitutiveLaw, Contact, EquationOfState, Sink, Surface, quantity
 from ..contracts.order import UpdateOrder
 from ..contracts.redistribution import Redistribution
 from ..contracts.refinement import Refinement
@@ -21,6 +21,7 @@ from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
+from ..registry.audit import forces
 from ..spaces import SPACES, Space
 from .base import Model, name_of_directory
 from .ending import AnyUntil, latest
@@ -194,13 +195,21 @@ class Case(Model):
     )
     until: AnyUntil = quantity("s", "simulated time, or conditions that end the run before a time at_most")
     gravity: list[float] | None = quantity(
-        "m/s^2", "acceleration along each axis; default: 9.81 down the last axis", default=None
+        "m/s^2",
+        "acceleration along each axis; default: 9.81 down the last axis, or none if a force stands for it",
+        default=None,
     )
     grid: Grid = Field(description="cells, domain and faces")
     bodies: list[Body] = Field(min_length=1, description="the bodies of material at the start")
     walls: dict[str, Wall] = Field(
         default={},
         description="walls beside the faces of the grid, each with a name of letters, digits, '_' and '-'",
+        json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
+    )
+    forces: dict[str, BodyForce] = Field(
+        default={},
+        description="accelerations of all material beside gravity, each by a name of letters, digits, '_' "
+        "and '-'",
         json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
     )
     sinks: dict[str, Sink] = Field(
@@ -234,13 +243,49 @@ class Case(Model):
         return ends[:, 0], ends[:, 1]
 
     @cached_property
-    def gravity_vector(self) -> np.ndarray:
-        """Acceleration of gravity, m/s², ``(dim,)``."""
+    def gravity_of_key(self) -> np.ndarray:
+        """The key ``gravity`` or its default, m/s², ``(dim,)``: nothing if a force stands for gravity."""
         if self.gravity is not None:
             return np.array(self.gravity)
         vector = np.zeros(self.space_.dim)
-        vector[-1] = -STANDARD_GRAVITY
+        if not any(force.is_gravity for force in self.forces.values()):
+            vector[-1] = -STANDARD_GRAVITY
         return vector
+
+    @cached_property
+    def gravity_vector(self) -> np.ndarray:
+        """Constant gravity, m/s², ``(dim,)``: that of the key and of constant forces."""
+        vector = self.gravity_of_key
+        for force in self.forces.values():
+            if force.constant:
+                vector = vector + self._somewhere(force)
+        return vector
+
+    @property
+    def varying_forces(self) -> dict[str, BodyForce]:
+        """The forces that are not constant, by name; constant ones are a part of ``gravity_vector``."""
+        return {name: force for name, force in self.forces.items() if not force.constant}
+
+    @cached_property
+    def gravity_at_start(self) -> np.ndarray:
+        """Gravity at t = 0, m/s², ``(dim,)``, with the uniform forces that stand for gravity."""
+        vector = self.gravity_vector
+        for force in self.varying_forces.values():
+            if force.is_gravity and force.uniform:
+                vector = vector + self._somewhere(force)
+        return vector
+
+    def _somewhere(self, force: BodyForce) -> np.ndarray:
+        """A uniform acceleration at t = 0, m/s², ``(dim,)``."""
+        origin = np.zeros((1, self.space_.dim))
+        return forces.acceleration(force, origin, origin, 0.0)[0]
+
+    @cached_property
+    def largest_forces(self) -> np.ndarray:
+        """Upper bound of the sum of the forces that are not constant along each axis, m/s², ``(dim,)``."""
+        lower, upper = self.domain_bounds
+        found = (forces.largest(force, lower, upper, 0.0, self.end) for force in self.varying_forces.values())
+        return sum(found, np.zeros(self.space_.dim))
 
     @cached_property
     def height(self) -> float:
@@ -253,11 +298,15 @@ class Case(Model):
     def _downwards(self) -> np.ndarray:
         """Unit vector of gravity without its components along periodic axes, which have no height; down the
         last axis if no component is left."""
-        along = np.array([self.grid.faces.get(f"{axis}_min") == "periodic" for axis in self.space_.axes])
-        vector = np.where(along, 0.0, self.gravity_vector)
+        vector = np.where(self._periodic, 0.0, self.gravity_at_start)
         if not vector.any():
             vector[-1] = -1.0
         return vector / np.linalg.norm(vector)
+
+    @property
+    def _periodic(self) -> np.ndarray:
+        """Which axes are periodic, ``(dim,)``."""
+        return np.array([self.grid.faces.get(f"{axis}_min") == "periodic" for axis in self.space_.axes])
 
     @cached_property
     def scale(self) -> Scale:
@@ -268,7 +317,17 @@ class Case(Model):
     def largest_energy(self) -> float:
         """Largest initial energy of a particle, J/kg: kinetic, and potential above the lowest particle."""
         fastest = max((body.largest_speed for body in self.bodies), default=0.0)
-        return float(np.linalg.norm(self.gravity_vector)) * self.height + fastest**2 / 2
+        return self.energy_of_fall + fastest**2 / 2
+
+    @cached_property
+    def energy_of_fall(self) -> float:
+        """Largest energy, J/kg, that gravity and forces can give over the extent of the bodies."""
+        of_gravity = float(np.linalg.norm(self.gravity_vector)) * self.height
+        if not self.varying_forces:
+            return of_gravity
+        lower, upper = zip(*(body.shape.bounds(self.space_) for body in self.bodies), strict=True)
+        extent = np.max(upper, axis=0) - np.min(lower, axis=0)
+        return of_gravity + float(self.largest_forces @ np.where(self._periodic, self.height, extent))
 
     def sound_speed(self, material: Material) -> float | None:
         """Sound speed of a material at the start, m/s; None if its law needs none."""
@@ -276,7 +335,7 @@ class Case(Model):
             return None
         speed = material.sound_speed
         if isinstance(speed, SoundSpeedFactor):
-            return speed.factor * math.sqrt(2 * float(np.linalg.norm(self.gravity_vector)) * self.height)
+            return speed.factor * math.sqrt(2 * self.energy_of_fall)
         if isinstance(speed, SoundSpeedMach):
             return math.sqrt(2 * self.largest_energy) / speed.mach
         return speed

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..registry.audit import forces
 from .model import STANDARD_GRAVITY, Body, Case
 
 EARTH = 0.1
@@ -38,11 +39,24 @@ def implausible(case: Case) -> Iterator[str]:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in mm/s²?"
     elif abs(strength / IN_CENTIMETRES - 1) < CLOSE:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in cm/s²?"
+    yield from _forces(case)
     if abs(strength / STANDARD_GRAVITY - 1) < EARTH:
         yield from _on_earth(case, strength)
     fastest = (2 * case.largest_energy) ** 0.5
     for number, body in enumerate(case.bodies):
         yield from _sound(f"bodies.{number}.material", case, body, fastest)
+
+
+def _forces(case: Case) -> Iterator[str]:
+    """Strong forces also set the sound speeds ``factor`` and ``mach``, and parameters that a law chooses."""
+    lower, upper = case.domain_bounds
+    for name, force in case.varying_forces.items():
+        strength = float(np.linalg.norm(forces.largest(force, lower, upper, 0.0, case.end)))
+        if strength > STRONGEST:
+            yield (
+                f"forces.{name} accelerates by up to {strength:.4g} m/s²; usual is up to {STRONGEST:g} m/s²: "
+                "is a stop too short, or a length in mm?"
+            )
 
 
 def _on_earth(case: Case, strength: float) -> Iterator[str]:

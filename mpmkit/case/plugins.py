@@ -23,6 +23,7 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
             used.append(("equation_of_state", body.material.equation_of_state))
     for wall in case.walls.values():
         used += [("surface", wall.surface), ("contact", wall.contact)]
+    used += [("body_force", force) for force in case.forces.values()]
     used += [("sink", sink) for sink in case.sinks.values()]
     used += [("diagnostic", diagnostic) for diagnostic in case.output.diagnostics.values()]
     used += [("particle_field", field) for field in case.output.fields.values()]

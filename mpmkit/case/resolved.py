@@ -11,7 +11,7 @@ from .output import FRAMES, ROWS
 def resolved(case: Case) -> dict[str, Any]:
     """The case with everything filled in that it leaves to a default."""
     data = case.model_dump(mode="json")
-    data["gravity"] = case.gravity_vector.tolist()
+    data["gravity"] = case.gravity_of_key.tolist()
     data["output"]["history_interval"] = case.output.history_interval or case.end / ROWS
     data["output"]["frame_interval"] = case.output.frame_interval or case.end / FRAMES
     for wall in data["walls"].values():

@@ -21,6 +21,7 @@ KINDS = [
     "equation_of_state",
     "surface",
     "contact",
+    "body_force",
     "sink",
     "diagnostic",
     "particle_field",

@@ -2,6 +2,7 @@
 
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
+from .body_force import BodyForce
 from .contact import Contact, ContactNodes
 from .diagnostic import Column, Diagnostic, Observed, ParticleField
 from .elastoviscoplastic import ElastoviscoplasticLaw
@@ -26,6 +27,7 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "BodyForce",
     "Cells",
     "Column",
     "ConstitutiveLaw",

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 import pluggy
 
 from .base import Plugin
+from .body_force import BodyForce
 from .contact import Contact
 from .diagnostic import Diagnostic, ParticleField
 from .equation_of_state import EquationOfState
@@ -90,6 +91,11 @@ def mpmkit_particle_fields() -> Iterable[type[ParticleField]]:  # type: ignore[e
 
 
 @hookspec
+def mpmkit_body_forces() -> Iterable[type[BodyForce]]:  # type: ignore[empty-body]
+    """Body forces of this module."""
+
+
+@hookspec
 def mpmkit_sinks() -> Iterable[type[Sink]]:  # type: ignore[empty-body]
     """Sinks of this module."""
 
@@ -105,6 +111,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
+    "body_force": ("mpmkit_body_forces", BodyForce),
     "sink": ("mpmkit_sinks", Sink),
     "diagnostic": ("mpmkit_diagnostics", Diagnostic),
     "particle_field": ("mpmkit_particle_fields", ParticleField),

@@ -79,6 +79,8 @@ class Kinematics:
     """``(n, 3, 3)``, F, if the law asks for it."""
     sound_speed: float | None = None
     """Sound speed of the equation of state, m/s; None for a law that computes its own pressure."""
+    time: float = 0.0
+    """Time at the start of the step, s."""
 
 
 def initial_state(law: ConstitutiveLaw, count: int) -> dict[str, np.ndarray]:

@@ -28,6 +28,7 @@ KINDS = {
     "equation_of_state": "equation of state",
     "surface": "surface",
     "contact": "contact",
+    "body_force": "body force",
     "sink": "sink",
     "diagnostic": "diagnostic",
     "particle_field": "particle field",

@@ -25,7 +25,8 @@ class Ending:
     rest: material that creeps at a constant rate leaves it, unless it needs four times the run so far to
         creep by
     4 ``KEPT`` h. Small elastic oscillations stay in it, although their speed is not zero. The run does not
-    end while a wall at rest will still move, or a wall that holds the material will still vanish.
+    end while a wall at rest will still move, a wall that holds the material will still vanish, or a force
+    still changes.
 
     Attributes:
         ended: ``at-rest``, ``condition``, or an empty text as long as the run continues.
@@ -71,7 +72,7 @@ class Ending:
             self._low = self._high = lengths
         self._low, self._high = np.minimum(self._low, lengths), np.maximum(self._high, lengths)
         moved = not (self._high - self._low <= KEPT * simulation.case.height).all()
-        if moved or self._a_wall_has_yet_to_move():
+        if moved or self._a_wall_has_yet_to_move() or not simulation.settled:
             self._since, self._low, self._high = simulation.time, lengths, lengths
         kept = simulation.time - self._since >= PART * simulation.time
         return kept and self._milestones.at_rest_since is not None

@@ -65,8 +65,9 @@ class Milestones:
     **At rest** means that the material does not move or spread any more. U is the largest RMS speed of the
     particles so far, and h the height of the bodies at the start. The RMS speed must be at most ``SLOW`` U,
     the spread diameter must change by at most ``STILL`` h in a time of h / U, and both for at least h / U.
-    These scales come from the run itself, so that water and a stiff paste are judged in the same way. Small
-    elastic oscillations of material at rest do not count as motion.
+    Material is not at rest as long as a force changes. These scales come from the run itself, so that water
+    and a stiff paste are judged in the same way. Small elastic oscillations of material at rest do not count
+    as motion.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -142,7 +143,7 @@ class Milestones:
             seen.close = float(below and math.isnan(seen.t500))
         seen.look_time, seen.look_spread = seen.time, seen.spread
         keeps = self._keeps_its_spread()
-        if speed > SLOW * seen.fastest or not keeps:
+        if speed > SLOW * seen.fastest or not keeps or not simulation.settled:
             seen.quiet_since = math.nan
         elif math.isnan(seen.quiet_since):
             seen.quiet_since = seen.time

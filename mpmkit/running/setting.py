@@ -29,7 +29,7 @@ def setting(case: Case) -> list[str]:
 
 def _floor_and_release(case: Case) -> list[str]:
     """A scene has a floor if gravity pulls towards a closed face of the vertical axis."""
-    pull, axis = float(case.gravity_vector[-1]), case.space_.axes[-1]
+    pull, axis = float(case.gravity_at_start[-1]), case.space_.axes[-1]
     if pull == 0:
         return []
     name = f"{axis}_{'min' if pull < 0 else 'max'}"

@@ -15,9 +15,9 @@ from .grid import Grid
 from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
-CAUSES = ("start", "in", "out", "gravity", "walls", "refinement", "redistribution", "rest")
+CAUSES = ("start", "in", "out", "gravity", "forces", "walls", "refinement", "redistribution", "rest")
 """Causes of changes of mass, momentum and energy; ``out`` is negative."""
-START, IN, OUT, GRAVITY, WALLS, REFINEMENT, REDISTRIBUTION, REST = range(len(CAUSES))
+START, IN, OUT, GRAVITY, FORCES, WALLS, REFINEMENT, REDISTRIBUTION, REST = range(len(CAUSES))
 MASS, ENERGY = 0, -1
 """Number of entries: mass, kg, momentum along each axis, N s, and energy, J."""
 
@@ -110,7 +110,8 @@ class Ledger:
         Args:
             p: the particles.
             time: s.
-            given: momentum, N s, ``(dim,)``, and energy, J, that walls and redistributions have given so far.
+            given: momentum, N s, ``(dim,)``, and energy, J, that forces, walls and
+                redistributions have given so far.
         """
         now = present(p)
         if not self.begun:

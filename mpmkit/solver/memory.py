@@ -79,7 +79,17 @@ def bytes_per_particle(case: Case) -> int:
     dim, support = case.space_.dim, case.scheme.shape.support
     tables = 2 * dim * support + support * case.space_.radial
     body_and_base = (1 + dim) * INDEX
-    return int(DOUBLE * (_state_doubles(case) + tables + PASSING) + body_and_base + _redistributed(case))
+    doubles = _state_doubles(case) + tables + PASSING + _of_forces(case)
+    return int(DOUBLE * doubles + body_and_base + _redistributed(case))
+
+
+def _of_forces(case: Case) -> int:
+    """Temporary doubles per particle of forces: places, velocities, sum, and each acceleration."""
+    forces = case.varying_forces.values()
+    if not forces:
+        return 0
+    same = all(force.uniform for force in forces)
+    return case.space_.dim * (2 if same else 5 + len(forces))
 
 
 def _redistributed(case: Case) -> int:

@@ -16,6 +16,7 @@ from ..kernels.gather import gather
 from ..kernels.scatter import scatter
 from ..registry import audit
 from .averager import Averager
+from .forces import Forces
 from .grid import Grid, Window
 from .particles import Group, Particles
 from .redistribution import Stage
@@ -27,7 +28,7 @@ from .walls import Faces, Walls
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
-FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
+FILLED_ANEW = ("base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
 """Arrays made from the case, or filled by a step before it reads them; weights are saved separately."""
 
 
@@ -36,20 +37,20 @@ class SceneOperations:
 
     def __init__(self, case: Case, grid: Grid, particles: Particles) -> None:
         dim, scheme = grid.dim, case.scheme
-        gravity, radial = case.gravity_vector, case.space_.radial
+        radial = case.space_.radial
         self.scheme = scheme
         self.grid = grid
         self.cell_size = grid.cell_size
         self.particles = particles
-        self.gravity = gravity
         self.radial = radial
         self.window = Window(grid)
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
+        self.forces = Forces(case, grid, particles)
         self.walls = Walls(case, grid, self.window, particles)
         self.faces = Faces(grid)
-        self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
+        self.stage = Stage(scheme, grid, self.walls, particles, radial, case.gravity_vector)
         support = scheme.shape.support
         self._scatter, self._gather = scatter(dim, support), gather(dim, support)
         self._gradient_due = False
@@ -103,6 +104,7 @@ class SceneOperations:
             "sorting": self.sorting,
             "relaxation": self.relaxation,
             "stage": self.stage,
+            "forces": self.forces,
             "walls": self.walls,
             "faces": self.faces,
         }
@@ -120,12 +122,18 @@ class SceneOperations:
 
     # --- The frame of a step
 
+    @property
+    def time(self) -> float:
+        """Time at the start of the present step, s."""
+        return self.particles.time
+
     def begin(self, time: float = 0.0) -> int | None:
         """Sort if needed, move the walls to a time, s, evaluate the shape functions.
 
         Returns:
             Index of a particle that left the grid; None if there is none.
         """
+        self.particles.time = time
         lost = self._sort()
         if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
             lost = self._sort()
@@ -171,6 +179,7 @@ class SceneOperations:
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
         self._account.begin()
+        self.forces.act(self.time, dt)
         try:
             self.scheme.order.step(self._for_order, dt)
         except PluginFault:  # wrong weights may be the real cause of the fault
@@ -210,8 +219,8 @@ class SceneOperations:
                 volume = p.volume * p.quadrature
         self._scatter(
             w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure, self.gravity,
-            self.cell_size, momentum, forces,
+            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure,
+            self.forces.acceleration, self.cell_size, momentum, forces,
         )  # fmt: skip
 
     def _fold(self, first: int, last: int) -> None:
@@ -244,6 +253,19 @@ class SceneOperations:
         given = self.faces.sums, self.faces.mapped
         nodes.solve_momentum(self.window.nodes, *self._faces(), *given, dt)
         self._walls_act(dt)
+        if self.forces:
+            self.forces.count(self._doubled_mean_velocity(dt), dt)
+
+    def _doubled_mean_velocity(self, dt: float) -> np.ndarray:
+        """2 Σ N (v - Δv/2), m/s, ``(n, dim)``: what a particle at rest takes with flip = -1."""
+        p, w = self.particles, self.window
+        found = np.zeros_like(p.velocity)
+        self._gather(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.gradient, self.hoop, self.cell_size,
+            0.0, -1.0, np.zeros_like(p.position), found, p.velocity_gradient, self._rate, p.affine, True,
+            False, False,
+        )  # fmt: skip
+        return found
 
     # --- Nodes to particles
 
@@ -259,7 +281,7 @@ class SceneOperations:
 
     def _moves(self) -> bool:
         """Whether a step moves any particle at all."""
-        return bool(self.gravity.any() or self.particles.velocity.any())
+        return bool(self.forces.acceleration.any() or self.particles.velocity.any())
 
     def _places(self) -> np.ndarray:
         """Positions of some of the particles, to detect whether they are moved."""

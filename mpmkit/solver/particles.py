@@ -103,6 +103,8 @@ class Particles:
     portion: np.ndarray
     """(n,) share of an initial particle: 1 at the start, halved by a split, summed by a merge"""
     groups: list[Group] = field(default_factory=list)
+    time: float = 0.0
+    """s, at the start of the present step"""
     numbers_given: int = 0
     """Count of particle numbers used so far; numbers of removed particles are not used again"""
 
@@ -180,6 +182,7 @@ class Particles:
             density=group.density,
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
+            time=self.time,
         )
 
     def wave_speed(self, group: Group) -> float:

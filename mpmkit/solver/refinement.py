@@ -56,6 +56,10 @@ class Refiner:
 
     # --- What there is
 
+    @property
+    def time(self) -> float:
+        return self._particles.time
+
     def sides(self) -> np.ndarray:
         return 2 * self._particles.box / self._grid.cell_size
 

@@ -10,12 +10,13 @@ from ..case.model import Case
 from ..case.plugins import plugins_of
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
+from ..registry.audit.forces import settles, shortest_period
 from ..registry.blame import blaming_plugins
 from .diagnosed import diagnosed
 from .draining import Drains
 from .grid import Grid
 from .guards import Guards, stop
-from .ledger import REDISTRIBUTION, WALLS, Ledger, present
+from .ledger import FORCES, REDISTRIBUTION, WALLS, Ledger, present
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
@@ -127,7 +128,8 @@ class Simulation:
         speed = max(math.sqrt(square), self.operations.walls.fastest(self.time, ahead))
         self.mach_number = mach_number(p, speed)
         waves = [(group, p.wave_speed(group)) for group in p.groups]
-        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
+        periods = [shortest_period(force) for force in self.case.varying_forces.values()]
+        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate, periods)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = math.sqrt(doubled / mass)
@@ -197,6 +199,7 @@ class Simulation:
         dt = min(self.time_step, at_most)
         self.operations.step(dt)
         self.time += dt
+        self.particles.time = self.time
         self.steps += 1
         self.particle_steps += len(self.particles)
         if self.drains.take_out(self.time):
@@ -217,8 +220,9 @@ class Simulation:
 
     def _follow_flow(self) -> None:
         """Recompute the sound speeds that follow the flow."""
-        gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
-        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
+        case, elapsed = self.case, self._interval * self.time_step
+        driving = case.gravity_vector, case.largest_forces
+        follow_flow(self.particles, self.grid, *driving, self._first_sound_speeds, elapsed)
 
     def _refine(self) -> None:
         """Let the refinement split and merge particles."""
@@ -251,7 +255,9 @@ class Simulation:
     def account(self) -> np.ndarray:
         """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
         dim, stage = self.grid.dim, self.operations.stage
+        forces = self.operations.forces
         by_cause = {
+            FORCES: (forces.impulse.sum(axis=0), float(forces.work.sum())),
             WALLS: (self._impulse_of_walls(dim), self.walls_work),
             REDISTRIBUTION: (stage.momentum, stage.energy),
         }
@@ -282,6 +288,17 @@ class Simulation:
     def walls_work(self) -> float:
         """Work of moving walls on the material so far, J."""
         return self.operations.walls.work
+
+    @property
+    def settled(self) -> bool:
+        """Whether no force changes any more."""
+        with self.blaming:
+            return all(settles(force) <= self.time for force in self.case.varying_forces.values())
+
+    @property
+    def force_work(self) -> np.ndarray:
+        """Work of each force that is not constant on the material so far, J."""
+        return self.operations.forces.work
 
     @property
     def redistribution_energy(self) -> float:

@@ -20,7 +20,12 @@ ROUNDING = 1e-14
 
 
 def follow_flow(
-    particles: Particles, grid: Grid, gravity: np.ndarray, first: list[float | None], elapsed: float
+    particles: Particles,
+    grid: Grid,
+    gravity: np.ndarray,
+    forces: np.ndarray,
+    first: list[float | None],
+    elapsed: float,
 ) -> None:
     """Move c of every material that follows the flow towards √(2 e) / mach.
 
@@ -30,13 +35,16 @@ def follow_flow(
         particles: their sound speeds, volume ratios and pressures are changed.
         grid: tells which axes are periodic.
         gravity: ``(dim,)``, m/s².
+        forces: ``(dim,)``, m/s², upper bounds of what other forces are along each axis.
         first: c of each material at the start, m/s.
         elapsed: time since the last change, s.
     """
     if all(group.mach is None for group in particles.groups):
         return
-    fastest = math.sqrt(2 * largest_energy(particles, grid, gravity))
-    length = float(np.ptp(particles.position, axis=0).max())
+    extent = np.ptp(particles.position, axis=0)
+    length = float(extent.max())
+    of_forces = float(forces @ np.where(grid.periodic, 0.0, extent))
+    fastest = math.sqrt(2 * (largest_energy(particles, grid, gravity) + of_forces))
     for group, at_start in zip(particles.groups, first, strict=True):
         if group.mach is not None and at_start is not None:
             speed = group.sound_speed

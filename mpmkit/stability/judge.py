@@ -58,8 +58,10 @@ def _created(fine: Trace) -> float:
 
 def _isolated(case: Case) -> bool:
     """Whether gravity is the only external force on the body."""
-    return case.space != "axisymmetric" and all(
-        case.grid.faces.get(face, "open") in ("open", "periodic") for face in case.space_.faces
+    return (
+        case.space != "axisymmetric"
+        and not case.varying_forces
+        and all(case.grid.faces.get(face, "open") in ("open", "periodic") for face in case.space_.faces)
     )
 
 

@@ -9,6 +9,7 @@ With pytest each property is a test of its own; without pytest, ``for check in l
 
 from .checks import (
     Check,
+    body_force_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -24,6 +25,7 @@ from .checks import (
     volumetric_checks,
 )
 from .pytest_tests import (
+    body_force_tests,
     contact_tests,
     diagnostic_tests,
     equation_of_state_tests,
@@ -43,6 +45,8 @@ from .violation import Violation
 __all__ = [
     "Check",
     "Violation",
+    "body_force_checks",
+    "body_force_tests",
     "contact_checks",
     "contact_tests",
     "diagnostic_checks",

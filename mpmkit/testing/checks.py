@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..contracts import (
+    BodyForce,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
@@ -26,6 +27,7 @@ from ..contracts import (
 )
 from ..errors import GuardStop, PluginFault
 from . import (
+    body_forces,
     contacts,
     elastic,
     equations_of_state,
@@ -121,6 +123,14 @@ ON_CONTACTS = (
     contacts.objectivity,
     contacts.galilei,
     contacts.batch_order,
+)
+ON_BODY_FORCES = (
+    body_forces.arrays,
+    body_forces.batch_order,
+    body_forces.declares,
+    body_forces.mean,
+    body_forces.largest,
+    body_forces.settles,
 )
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
 ON_DIAGNOSTICS = (
@@ -232,6 +242,23 @@ def surface_checks(surface: Surface, *, size: float = 1.0) -> list[Check]:
 def contact_checks(contact: Contact) -> list[Check]:
     """What every contact must do."""
     return _of("contact", contact, [(check.__name__, partial(check, contact)) for check in ON_CONTACTS])
+
+
+def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
+    """What every body force must do, in each space that can have it; see ``body_force_tests``."""
+    homes = body_forces.at_home(force)
+    return _of(
+        "body_force",
+        force,
+        [
+            ("home", partial(body_forces.home, force)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, force, space, size))
+                for check in ON_BODY_FORCES
+                for space in homes
+            ),
+        ],
+    )
 
 
 def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:

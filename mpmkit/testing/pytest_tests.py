@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..contracts import (
+    BodyForce,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
@@ -21,6 +22,7 @@ from ..contracts import (
 )
 from .checks import (
     Check,
+    body_force_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -154,6 +156,18 @@ def contact_tests(contact: Contact) -> Test:
     makes no difference.
     """
     return _tests(contact_checks(contact))
+
+
+def body_force_tests(force: BodyForce, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a body force, in each space that can have it.
+
+    An acceleration for each place, and a mean, a bound and a time of rest that fit it.
+
+    Args:
+        force: with parameters; it must act within the first 5 s.
+        size: m; places reach so far from the origin along each axis.
+    """
+    return _tests(body_force_checks(force, size=size))
 
 
 def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:

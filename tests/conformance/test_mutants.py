@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import body_force_mutants
 import contact_mutants
 import diagnostic_mutants
 import equation_of_state_mutants
@@ -22,6 +23,7 @@ from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
 from mpmkit.registry import installed
 from mpmkit.testing import (
     Violation,
+    body_force_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -191,11 +193,12 @@ CHECKS = {
     "equation_of_state": equation_of_state_checks,
     "surface": surface_checks,
     "contact": contact_checks,
+    "body_force": body_force_checks,
     "sink": sink_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "sink", "diagnostic")
+NEED_PARAMETERS = ("surface", "contact", "body_force", "sink", "diagnostic")
 """Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
@@ -274,6 +277,20 @@ OTHER_MUTANTS = [
     ("contact", contact_mutants.HiddenMemory, "batch order"),
     ("contact", contact_mutants.NoParity, "declares"),
     ("contact", contact_mutants.Rows, "descriptor"),
+    ("body_force", body_force_mutants.Nowhere, "home"),
+    ("body_force", body_force_mutants.SaysNothing, "home"),
+    ("body_force", body_force_mutants.OneForAll, "arrays plane-strain"),
+    ("body_force", body_force_mutants.Infinite, "arrays 3d"),
+    ("body_force", body_force_mutants.Moves, "arrays axisymmetric"),
+    ("body_force", body_force_mutants.Nothing, "arrays plane-strain"),
+    ("body_force", body_force_mutants.KnowsTheOthers, "batch order 3d"),
+    ("body_force", body_force_mutants.Varies, "declares plane-strain"),
+    ("body_force", body_force_mutants.Drags, "declares 3d"),
+    ("body_force", body_force_mutants.Changes, "declares axisymmetric"),
+    ("body_force", body_force_mutants.Double, "mean plane-strain"),
+    ("body_force", body_force_mutants.Weaker, "largest 3d"),
+    ("body_force", body_force_mutants.Restless, "settles plane-strain"),
+    ("body_force", body_force_mutants.NoPeriod, "settles 3d"),
     ("sink", sink_mutants.Nowhere, "home"),
     ("sink", sink_mutants.SaysNothing, "home"),
     ("sink", sink_mutants.Rows, "takes something plane-strain"),
@@ -315,6 +332,7 @@ OTHER_MUTANTS = [
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
+        ("body_force", body_force_mutants.Pulse),
         ("sink", sink_mutants.Below),
         ("diagnostic", diagnostic_mutants.Fastest),
         ("particle_field", particle_field_mutants.Momentum),

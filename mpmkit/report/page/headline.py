@@ -85,7 +85,7 @@ def _spreads(source: Source) -> bool:
     if source.space.name == "plane-strain":
         return False
     gravity = case.get("gravity")
-    falls = gravity is None or gravity[-1] < 0
+    falls = gravity is None or gravity[-1] < 0 or bool(case.get("forces"))
     closed = case["grid"].get("faces", {}).get(f"{vertical}_min", "open") not in ("open", "periodic")
     return falls and closed and source.results.series("spread_diameter") is not None
 

@@ -70,6 +70,7 @@ def _weight(source: Source) -> list[tuple[str, str]]:
     history, mass = source.results.history, source.results.series("total_mass")
     gravity = source.results.case.get("gravity") or [0.0, -STANDARD_GRAVITY]
     rows, upright = len(source.results.time), gravity[-1] < 0 and not any(gravity[:-1])
+    upright &= not source.results.case.get("forces")
     if not upright or mass is None or "wall_force" not in history or rows < 3:
         return []
     vertical = history["wall_force"].values[..., -1].sum(axis=1)[-max(1, round(LAST * rows)) :]
