@@ -89,10 +89,13 @@ def validated(model: type[M], data: Any, source: str, what: str) -> M:
         raise CaseError(f"{source}: a {what} must be a JSON object")
     data = {key: value for key, value in data.items() if key != "$schema"}
     try:
+        require_finite(data)  # for Python objects; numbers of a file are already checked
         return model.model_validate_json(json.dumps(data, allow_nan=False))
     except ValidationError as error:
         raise CaseError(f"{source}: {explain(error, data, model, installed(), what)}") from None
-    except (TypeError, ValueError, RecursionError) as error:
+    except RecursionError:
+        raise CaseError(f"{source}: {NESTED}") from None
+    except (TypeError, ValueError) as error:
         raise CaseError(f"{source}: {error}") from None
 
 
