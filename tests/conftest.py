@@ -10,6 +10,19 @@ import numba
 import pytest
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config):
+    """Whole folders of tests run on all cores; single files in this process, which starts at once.
+
+    ``-n`` decides otherwise: ``pytest -n 0`` runs everything in this process.
+    """
+    here = "PYTEST_XDIST_WORKER" not in os.environ and config.pluginmanager.hasplugin("xdist")
+    if here and config.option.numprocesses is None and all(map(os.path.isdir, config.args)):
+        config.option.numprocesses = "auto"
+        if config.option.dist == "no":
+            config.option.dist = "worksteal"
+
+
 @pytest.fixture(autouse=True)
 def one_thread():
     """One thread unless a test asks for more: the scenes are small, and on a busy machine two that wait for

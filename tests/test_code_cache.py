@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -313,6 +314,11 @@ def test_whatever_changes_that_a_kernel_is_compiled_with_compiles_it_anew(change
     finally:
         for name, text in before.items():
             (compiled_once / name).write_text(text)
+
+
+def test_another_copy_of_the_same_sources_finds_the_same_code(compiled_once, fresh_run, tmp_path):
+    copy = shutil.copytree(compiled_once, tmp_path / "copy")
+    assert fresh_run(copy) == (250.0, 1, 0)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from mpmkit.geometry import (
     Cylinder,
     Frustum,
     Mesh,
+    Polygon,
     Sphere,
     expected_count,
     sample,
@@ -31,8 +32,14 @@ CONE = Frustum(kind="frustum", bottom_radius=0.1, top_radius=0.05, height=0.3)
 ROD = Cylinder(kind="cylinder", radius=0.1, height=0.2)
 BALL = Sphere(kind="sphere", centre=[0, 0, 0.1], radius=0.1)
 BALL_2D = Sphere(kind="sphere", centre=[0, 0.1], radius=0.1)
+HOLLOW = Sphere(kind="sphere", centre=[0, 0, 0.1], radius=0.1, inner_radius=0.05)
+HOLLOW_2D = Sphere(kind="sphere", centre=[0, 0.1], radius=0.1, inner_radius=0.05)
 BLOCK = Box(kind="box", lower=[0, 0, 0], upper=[0.1, 0.2, 0.3])
 RING = Box(kind="box", lower=[0.1, 0], upper=[0.3, 0.5])
+CORNERS = [[0.05, 0], [0.1, 0], [0.1, 0.2], [0.3, 0.5], [0.05, 0.5]]
+"""A funnel with its outlet, which has a corner that points inwards."""
+FUNNEL = Polygon(kind="polygon", corners=CORNERS)
+HOPPER = Polygon(kind="polygon", corners=CORNERS[::-1], y=[-0.1, 0.05])
 
 EXACT = [
     (CONE, SOLID, math.pi * 0.3 / 3 * (0.01 + 0.005 + 0.0025)),
@@ -44,9 +51,15 @@ EXACT = [
     (BALL, SOLID, 4 / 3 * math.pi * 0.001),
     (BALL_2D, RADIAL, 4 / 3 * math.pi * 0.001),
     (BALL_2D, PLANE, math.pi * 0.01),
+    (HOLLOW, SOLID, 4 / 3 * math.pi * (0.001 - 0.05**3)),
+    (HOLLOW_2D, PLANE, math.pi * (0.01 - 0.0025)),
+    (HOLLOW_2D, RADIAL, 4 / 3 * math.pi * (0.001 - 0.05**3)),
     (BLOCK, SOLID, 0.006),
     (RING, PLANE, 0.1),
     (RING, RADIAL, math.pi * (0.09 - 0.01) * 0.5),
+    (FUNNEL, PLANE, 0.05 * 0.2 + 0.3 * 0.15),
+    (FUNNEL, RADIAL, math.pi * (0.01 * 0.2 + 0.3 * (0.01 + 0.03 + 0.09) / 3 - 0.0025 * 0.5)),
+    (HOPPER, SOLID, 0.15 * (0.05 * 0.2 + 0.3 * 0.15)),
 ]
 each = pytest.mark.parametrize(
     ("shape", "space", "volume"), EXACT, ids=[f"{shape.kind}-{space.name}" for shape, space, _ in EXACT]
@@ -297,6 +310,9 @@ def test_a_body_between_lattice_points_gets_no_particles():
         (ROD.model_copy(update={"base": [0.2, 0.0]}), RADIAL, ["cylinder's base", "[0.2, 0.0]", "[0, z]"]),
         (CONE.model_copy(update={"base": [0.0, 0.0]}), SOLID, ["frustum's base", "3 numbers"]),
         (Box(kind="box", lower=[-1, 0], upper=[1, 1]), RADIAL, ["lower", "[-1.0, 0.0]", "at least 0"]),
+        (FUNNEL, SOLID, ["y is None", "3d", "needs y"]),
+        (HOPPER, PLANE, ["y is [-0.1, 0.05]", "has no y"]),
+        (Polygon(kind="polygon", corners=[[-1, 0], [1, 0], [0, 1]]), RADIAL, ["[-1.0, 0.0]", "at least 0"]),
         (Mesh(kind="mesh", file="a.stl"), PLANE, ["a.stl", "only in 3d"]),
         (Mesh(kind="mesh", file="nowhere.stl"), SOLID, ["nowhere.stl", "no such file"]),
     ],
@@ -322,6 +338,12 @@ def test_a_shape_that_the_space_cannot_hold_is_refused(shape, space, words):
         {"kind": "sphere", "centre": [0], "radius": 1},
         {"kind": "sphere", "centre": [0, 0], "radius": 1, "colour": "red"},
         {"kind": "mesh", "file": "a.stl", "scale": 0},
+        {"kind": "sphere", "centre": [0, 0], "radius": 1, "inner_radius": 1},
+        {"kind": "polygon", "corners": [[0, 0], [1, 0]]},
+        {"kind": "polygon", "corners": [[0, 0], [1, 0], [2, 0]]},
+        {"kind": "polygon", "corners": [[0, 0], [1, 1], [1, 0], [0, 1]]},
+        {"kind": "polygon", "corners": [[0, 0], [1, 0], [0, 1, 2]]},
+        {"kind": "polygon", "corners": [[0, 0], [1, 0], [0, 1]], "y": [1, 1]},
         {"kind": "torus"},
     ],
 )

@@ -184,6 +184,37 @@ def test_every_full_cell_weighs_what_it_is(space):
     assert size @ found["weights"] == pytest.approx((CELLS * DX) ** len(AXES[space]), rel=1e-12)
 
 
+def test_weighted_volumes_fill_each_cell_where_most_boxes_lie_across_two():
+    """Rows at 0.27, 1.15, 1.95, ... cells: sheared material lies so at a wall.
+
+    The filling of a cell is then wrong by up to 10 %. One pass of the weights leaves 2 %, three leave 0.3 %.
+    """
+    simulation = filled("plane-strain", {"plane-strain": {**SEAMED["plane-strain"], "z_max": "stick"}})
+    p = simulation.particles
+    order = np.argsort(p.position[:, 1], kind="stable")
+    rows = np.array([0.27, 1.15, 1.95, 2.7, 3.3, 4.05, 4.85, 5.73]) * DX
+    p.position[order, 1] = np.repeat(rows, len(p) // len(rows))
+    p.position[order, 0] = np.tile(
+        (np.arange(len(p) // len(rows)) + 0.5) / (len(p) // len(rows)) * CELLS * DX, len(rows)
+    )
+    simulation.operations.sorting.sorts = 0
+    simulation.operations.begin()
+    p.velocity_gradient[:, 0, 1] = 1e-9  # shear that moves nothing
+    stage = simulation.operations.stage
+    stage.shear = stage.time = 1.0
+    stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
+    found = {}
+
+    def probe(ops):
+        cells = ops.cells()
+        found["before"] = cells.at_particles(np.abs(cells.filling() - 1))
+        found["after"] = cells.at_particles(np.abs(cells.filling(p.quadrature) - 1))
+
+    redistribute(simulation, probe)
+    assert found["before"].max() > 0.05
+    assert found["after"].max() < 0.006
+
+
 def test_material_comes_to_fill_the_room_there_is():
     """Particles that lie too close are drawn apart by J, those that lie too far together."""
     simulation = filled("plane-strain", SEAMED)
@@ -196,6 +227,16 @@ def test_material_comes_to_fill_the_room_there_is():
     stage.shear = stage.elapsed = 0.5
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-2 * 0.5 * np.log(1.03)), rtol=1e-10)
+
+
+def test_only_the_flow_carries_material_out_of_an_open_face():
+    """There a sink takes it, or a guard stops the run; no shift of places may bring that about."""
+    simulation = filled("plane-strain", {"plane-strain": {"z_min": "stick"}})
+    simulation.operations.begin()
+    redistribute(simulation, lambda ops: ops.shift(np.full((len(simulation.particles), 2), 0.6 * DX)))
+    top = simulation.grid.extent
+    assert (simulation.particles.position <= top).all()
+    assert (simulation.particles.position.max(axis=0) == top).all()
 
 
 def test_a_solid_keeps_its_places_and_boxes():

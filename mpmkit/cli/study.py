@@ -65,6 +65,7 @@ def run_study(
     from ..running.interrupts import take_signals_as_interrupts
     from ..study import collect, execute, members_of
     from ..study.execute import Unfinished, named
+    from ..study.page import NAME
     from ..study.processes import cores
     from ..study.store import Store
 
@@ -84,6 +85,7 @@ def run_study(
                     executor=executor,
                     workers=workers,
                     listen=progress,
+                    page=NAME if study.pages else None,
                 )
             except KeyboardInterrupt:
                 raise Interrupted(

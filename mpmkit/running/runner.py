@@ -43,6 +43,7 @@ def run(
     threads: int | None = None,
     listen: Listener | None = None,
     checkpoint_every: float | None = None,
+    draw: bool = True,
 ) -> xarray.Dataset:
     """Run a case to its end.
 
@@ -54,6 +55,8 @@ def run(
         listen: called with the progress a few times a second.
         checkpoint_every: wall time, s, between two checkpoints in ``out``, for ``resume``. A checkpoint is
         always written on Ctrl-C and before the last step.
+        draw: whether the report is drawn at the end, if ``output.report`` asks for it; ``mpmkit report``
+            can draw it later.
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
@@ -78,7 +81,7 @@ def run(
             execute(recorder, Stopwatch(), used, listen, None)
         else:
             directory = RunDirectory(Path(out), overwrite, keep={file.name for file in files})
-            recorder = _run_in(directory, case, files, simulation, used, listen, checkpoint_every)
+            recorder = _run_in(directory, case, files, simulation, used, listen, checkpoint_every, draw)
     return recorder.history.dataset()
 
 
@@ -90,6 +93,7 @@ def _run_in(
     threads: int,
     listen: Listener | None,
     checkpoint_every: float | None,
+    draw: bool,
 ) -> Recorder:
     # Read all files before anything is overwritten: they may be in the same directory.
     contents, data, itself = {file.name: file.content() for file in files}, portable(case), identity(case)
@@ -104,7 +108,7 @@ def _run_in(
             LOGGER.error("%s", error)
             raise
         watch = Stopwatch()
-        _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself))
+        _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself), draw)
     return recorder
 
 
@@ -155,7 +159,8 @@ def resume(
                 said = _attributes(found, used, portable(found))
                 recorder, watch = Recorder(simulation, said, files, goes_on=True), Stopwatch()
                 _restore(recorder, watch, state, path)
-                _execute(recorder, used, listen, watch, Saver(recorder, watch, checkpoint_every, identity_))
+                saver = Saver(recorder, watch, checkpoint_every, identity_)
+                _execute(recorder, used, listen, watch, saver, draw=True)
     return recorder.history.dataset()
 
 
@@ -175,7 +180,12 @@ def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str
 
 
 def _execute(
-    recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
+    recorder: Recorder,
+    threads: int,
+    listen: Listener | None,
+    watch: Stopwatch,
+    saver: Saver,
+    draw: bool,
 ) -> None:
     """Run to the end in a directory, and draw the report, even if a guard stopped the run.
 
@@ -190,20 +200,20 @@ def _execute(
         hurry = execute(recorder, watch, threads, listen, saver)
     except GuardStop:
         try:
-            _report(recorder)
+            _report(recorder, draw)
         except Undrawn as undrawn:
             LOGGER.warning("%s", undrawn)
         raise
     except Interrupted:
-        _page(recorder)
+        _page(recorder, draw)
         raise
-    _report(recorder, hurry)
+    _report(recorder, draw, hurry)
 
 
-def _report(recorder: Recorder, hurry: bool = False) -> None:
+def _report(recorder: Recorder, draw: bool, hurry: bool = False) -> None:
     """Draw the pictures. They can be drawn again later: a failure here must not make the run fail."""
     case, directory = recorder.simulation.case, recorder.directory
-    if not case.output.report or directory is None:
+    if not draw or not case.output.report or directory is None:
         return
     try:
         if hurry:
@@ -222,10 +232,10 @@ def _report(recorder: Recorder, hurry: bool = False) -> None:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
 
 
-def _page(recorder: Recorder) -> None:
+def _page(recorder: Recorder, draw: bool) -> None:
     """Write the page of an interrupted run; a second interrupt, or a failure, leaves it out."""
-    directory = recorder.directory
-    if not recorder.simulation.case.output.report or directory is None:
+    case, directory = recorder.simulation.case, recorder.directory
+    if not draw or not case.output.report or directory is None:
         return
     try:
         from ..report.page import write_page

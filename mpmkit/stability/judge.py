@@ -39,10 +39,16 @@ class Criteria:
 
 def distance(found: Trace, fine: Trace) -> float:
     """Largest RMS distance between two runs, relative to the largest displacement."""
-    weight = fine.mass / fine.mass.sum()
-    apart = np.sqrt(((found.position - fine.position) ** 2).sum(axis=2) @ weight)
+    apart, weight = distances(found, fine), fine.mass / fine.mass.sum()
     moved = np.sqrt(((fine.position - fine.position[0]) ** 2).sum(axis=2) @ weight)
     return float(apart.max() / moved.max()) if moved.max() > 0 else float(apart.max() > 0)
+
+
+def distances(found: Trace, fine: Trace) -> np.ndarray:
+    """RMS distance, m, between two runs at the rows that both have."""
+    rows = min(len(found.position), len(fine.position))
+    squared = ((found.position[:rows] - fine.position[:rows]) ** 2).sum(axis=2)
+    return np.sqrt(squared @ (fine.mass / fine.mass.sum()))
 
 
 def _created(fine: Trace) -> float:

@@ -43,7 +43,7 @@ AS_THE_FLOOR_SEES_IT = {
 
 
 def slid(changes: dict, angle: float) -> tuple[float, float, float]:
-    """Place along the floor, m, speed along it, m/s, and height above it, of the centre of mass."""
+    """Place along the floor, m, speed along it, m/s, and height, m, of the centre of mass at the end."""
     simulation = Simulation(parse_case(copy.deepcopy(SCENE) | changes))
     advance_to(simulation, LATE)
     p, along = simulation.particles, np.array([math.cos(angle), math.sin(angle)])

@@ -22,12 +22,22 @@ BEHIND = (histories, measured, flow_curves, balance, wall_forces, numerics, repe
 a module and add it here."""
 
 
-def page_of(directory: Path, live: bool = False) -> str:
+def page_of(
+    directory: Path,
+    live: bool = False,
+    *,
+    title: str | None = None,
+    above: str | None = None,
+    most: int = MOST_BYTES,
+) -> str:
     """The page of a run as HTML; the run may still be in progress.
 
     Args:
         directory: of the run; its history must have a row.
         live: whether the scripts of the page may ask the server that it came from for newer data.
+        title: of the page; default: the name of the case.
+        above: address of the page of the study that the run belongs to, relative to this page.
+        most: largest size of the page, bytes.
 
     Raises:
         CaseError: where the directory does not hold a run.
@@ -39,9 +49,10 @@ def page_of(directory: Path, live: bool = False) -> str:
 
     def page(flow: Section | None) -> str:
         sections = [*before, *([] if flow is None else [flow]), *behind]
-        return assembled(results.title, results.case.get("description", ""), sections, made_by, live)
+        said = results.case.get("description", "")
+        return assembled(title or results.title, said, sections, made_by, live, above)
 
-    room = MOST_BYTES - len(page(None).encode()) - 20_000
+    room = most - len(page(None).encode()) - 20_000
     return page(player.section(source, room))
 
 

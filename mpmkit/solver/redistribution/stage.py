@@ -197,7 +197,7 @@ class Stage:
         p = self._particles
         self._require(displacement, "a displacement", p.position.shape)
         displacement = np.ascontiguousarray(displacement, dtype=np.float64)
-        low, high = self._kept_from_walls()
+        low, high = self._kept_inside()
         change = np.zeros((len(p), p.affine.shape[1]))
         for part in self._fluids():
             shifts.shift(p.position[part], displacement[part], low, high, p.affine[part], change[part])
@@ -208,11 +208,12 @@ class Stage:
                 taken = self._splines.at_particles(self._splines.average(along, p.mass))
                 p.velocity[:, axis] += along - taken
 
-    def _kept_from_walls(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest positions, m, along each axis; infinite if there is no wall."""
+    def _kept_inside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest positions, m, along each axis: off the walls, and not out of an open face; only
+        the flow carries material through it."""
         grid, margin = self._grid, AT_A_WALL * self._grid.cell_size
-        walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
-        return np.where(walls[:, 0], margin, -np.inf), np.where(walls[:, 1], grid.extent - margin, np.inf)
+        away = np.where(grid.faces == OPEN, 0.0, np.where(grid.faces == PERIODIC, -np.inf, margin))
+        return away[:, 0], grid.extent - away[:, 1]
 
     def weigh(self, factor: np.ndarray) -> None:
         self._require(factor, "a weight", (len(self._particles),))
