@@ -72,7 +72,8 @@ class Ending:
             self._low = self._high = lengths
         self._low, self._high = np.minimum(self._low, lengths), np.maximum(self._high, lengths)
         moved = not (self._high - self._low <= KEPT * simulation.case.height).all()
-        if moved or self._a_wall_has_yet_to_move() or not simulation.settled:
+        waits = self._a_wall_has_yet_to_move() or self._more_comes_in()
+        if moved or waits or not simulation.settled:
             self._since, self._low, self._high = simulation.time, lengths, lengths
         kept = simulation.time - self._since >= PART * simulation.time
         return kept and self._milestones.at_rest_since is not None
@@ -81,11 +82,16 @@ class Ending:
         """Spread diameter, height, and the centre of mass along the axes that are not periodic, m."""
         simulation = self._simulation
         p, measures, grid = simulation.particles, simulation.measures, simulation.grid
+        if not len(p):
+            return np.zeros(0)
         centre = (p.mass[:, None] * p.position).sum(axis=0) / p.mass.sum()
         along = grid.periodic.copy()
         along[0] |= simulation.case.space_.radial  # the centre is on the axis
         lengths = np.array([measures.spread(p), measures.height(p), *centre[~along]])
         return np.nan_to_num(lengths)  # no spread along a periodic axis
+
+    def _more_comes_in(self) -> bool:
+        return self._simulation.operations.sources.goes_on(self._simulation.time)
 
     def _a_wall_has_yet_to_move(self) -> bool:
         time, end = self._simulation.time, self._simulation.case.end

@@ -133,7 +133,7 @@ class Milestones:
         simulation, seen = self._simulation, self._seen
         p = simulation.particles
         mass, doubled, _ = kinetics(p.mass, p.velocity)
-        speed = math.sqrt(doubled / mass)
+        speed = math.sqrt(doubled / mass) if mass else 0.0
         seen.fastest = max(seen.fastest, speed)
         passed, grown = seen.time - seen.look_time, seen.spread - seen.look_spread
         if passed > 0 and math.isfinite(grown):
