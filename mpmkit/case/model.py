@@ -429,12 +429,12 @@ class Case(Model):
     def largest_energy(self) -> float:
         """Largest initial energy of a particle, J/kg: kinetic, and potential above the lowest particle."""
         fastest = max(
-            [0.0, *map(self._largest_speed, self.bodies)]
+            [0.0, *map(self.speed_at_start, self.bodies)]
             + [self.source_speed(name, 0.0, self.end) for name in self.sources]
         )
         return self.energy_of_fall + fastest**2 / 2
 
-    def _largest_speed(self, body: Body) -> float:
+    def speed_at_start(self, body: Body) -> float:
         """Largest speed of a body at the start, m/s; of a field that of samples."""
         if "velocity" not in body.initial:
             return body.largest_speed
