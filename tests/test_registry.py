@@ -222,7 +222,7 @@ def test_third_parties_that_are_left_out_are_told_of_and_built_ins_stay(
     if asked == "option":
         del os.environ["MPMKIT_PLUGINS"]
         option = ["--no-plugins"]
-    why = "since MPMKIT_PLUGINS is 'mud-pack'" if asked == "another named" else "as --no-plugins asks"
+    why = "because MPMKIT_PLUGINS is 'mud-pack'" if asked == "another named" else "because of --no-plugins"
 
     path = tmp_path / "case.json"
     path.write_text(json.dumps(case()), encoding="utf-8")

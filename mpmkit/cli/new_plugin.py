@@ -22,7 +22,9 @@ KINDS = [
     "surface",
     "contact",
     "body_force",
+    "initial_field",
     "sink",
+    "source",
     "diagnostic",
     "particle_field",
 ]

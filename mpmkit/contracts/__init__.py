@@ -10,13 +10,16 @@ from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
+from .initial_field import Beginning, InitialField
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .rate import Rate, RateTable
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -27,6 +30,7 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "Beginning",
     "BodyForce",
     "Cells",
     "Column",
@@ -38,19 +42,24 @@ __all__ = [
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
+    "InitialField",
     "Kinematics",
     "Lattice",
+    "Mouth",
     "Observed",
     "Operations",
     "ParticleField",
     "PlacedSurface",
     "Plugin",
+    "Rate",
+    "RateTable",
     "Redistributing",
     "Redistribution",
     "Refinement",
     "Refining",
     "ShapeFunction",
     "Sink",
+    "Source",
     "Space",
     "StateVariable",
     "Surface",

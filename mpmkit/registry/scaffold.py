@@ -29,7 +29,9 @@ KINDS = {
     "surface": "surface",
     "contact": "contact",
     "body_force": "body force",
+    "initial_field": "initial field",
     "sink": "sink",
+    "source": "source",
     "diagnostic": "diagnostic",
     "particle_field": "particle field",
 }

@@ -10,11 +10,13 @@ from ..contracts import (
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     ParticleField,
     Redistribution,
     Refinement,
     ShapeFunction,
     Sink,
+    Source,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -26,6 +28,7 @@ from .checks import (
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
+    initial_field_checks,
     law_checks,
     order_checks,
     particle_field_checks,
@@ -33,6 +36,7 @@ from .checks import (
     refinement_checks,
     shape_checks,
     sink_checks,
+    source_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -170,6 +174,16 @@ def body_force_tests(force: BodyForce, *, size: float = 1.0) -> Test:
     return _tests(body_force_checks(force, size=size))
 
 
+def initial_field_tests(field: InitialField, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for an initial field.
+
+    Args:
+        field: with parameters.
+        size: m; places reach so far from the origin along each axis.
+    """
+    return _tests(initial_field_checks(field, size=size))
+
+
 def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
     """A test function, as that of ``law_tests``, for a sink, in each space that can have it.
 
@@ -180,6 +194,19 @@ def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
         size: m; the grid reaches so far from the origin along each axis, and places half as far again.
     """
     return _tests(sink_checks(sink, size=size))
+
+
+def source_tests(source: Source, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a source, with its mouth in each space that can have it.
+
+    Its column never moves back, is no faster than it says, and is where it is at a time whatever it was asked
+    before.
+
+    Args:
+        source: with parameters.
+        size: m; the grid reaches so far from the origin along each axis.
+    """
+    return _tests(source_checks(source, size=size))
 
 
 def diagnostic_tests(diagnostic: Diagnostic) -> Test:
