@@ -16,9 +16,13 @@ TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", 
 """Names of the other fields in frames and histories."""
 
 
+LAW = "law."
+"""Before the name of a state variable."""
+
+
 def field_name(state: str) -> str:
     """Name of the field of a state variable."""
-    return f"law.{state}"
+    return f"{LAW}{state}"
 
 
 def former_names(case: Case) -> dict[str, str]:
@@ -83,5 +87,5 @@ def flat(shape: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def laws_of(case: Case) -> Iterable[ConstitutiveLaw]:
-    """The law of each body."""
-    return (body.material.constitutive_law for body in case.bodies)
+    """The law of each body and source."""
+    return (material.constitutive_law for material in case.materials.values())

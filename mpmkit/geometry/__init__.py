@@ -17,6 +17,7 @@ from .overlap import shared_volume
 from .polygon import Polygon
 from .sampling import Sample, expected_count, sample
 from .sphere import Sphere
+from .turning import axis_problem, generator, rotation
 
 AnyShape = Annotated[Frustum | Cylinder | Box | Sphere | Polygon | Mesh, Field(discriminator="kind")]
 """Any shape in a case file; its ``kind`` selects the class."""
@@ -45,8 +46,11 @@ __all__ = [
     "Shape",
     "Solid",
     "Sphere",
+    "axis_problem",
     "contour",
     "expected_count",
+    "generator",
+    "rotation",
     "sample",
     "shared_volume",
 ]

@@ -43,12 +43,12 @@ def scatter(dim: int, support: int):
     """The kernel that maps mass, momentum and force to the nodes, for a shape function of that support.
 
     ``scatter(nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume,
-    stress, pressure, gravity, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``) and the
-    force (if ``forces``) of all particles.
+    stress, pressure, acceleration, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``)
+    and the force (if ``forces``) of all particles. ``acceleration`` has a row for each, or one for all.
 
     m v = Σ m N (v + C (x_node - x̄)), with the affine part C, 1/s, where ``affine`` has columns, about the
     centroid x̄ = Σ N x_node, so that it adds no momentum.
-    f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
+    f = Σ m a N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
     ``hoop`` has columns. ``stress`` holds the extra stress; the Cauchy stress is that minus ``pressure``.
     ``tasks[g, colour, t]`` is the first particle of task t of a colour in group g.
     """
@@ -59,10 +59,11 @@ def _scatter_2d(support):
     @kernel()
     def scatter_2d(
         nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-        pressure, gravity, cell_size, momentum, forces,
+        pressure, acceleration, cell_size, momentum, forces,
     ):  # fmt: skip
         radial = hoop.shape[1] > 0
         has_affine = momentum and affine.shape[1] > 0
+        own = len(acceleration) > 1
         groups = tasks.shape[0]
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
@@ -70,13 +71,13 @@ def _scatter_2d(support):
                     for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
                         first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1])
                         m, V = mass[p] * momentum, -volume[p] * forces
-                        weighs = mass[p] * forces
+                        weighs, k = mass[p] * forces, p if own else 0
                         s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
                         s22, s01 = V * (stress[p, 2] - pressure[p]), V * stress[p, 5]
                         # What the particle gives, by the factor it comes with: N, ∂N/∂x, ∂N/∂y, N/r.
                         M = pack(
                             m, m * velocity[p, 0], m * velocity[p, 1],
-                            weighs * gravity[0], weighs * gravity[1], 0.0, 0.0, 0.0,
+                            weighs * acceleration[k, 0], weighs * acceleration[k, 1], 0.0, 0.0, 0.0,
                         )  # fmt: skip
                         S0 = pack(0.0, 0.0, 0.0, s00, s01, 0.0, 0.0, 0.0)
                         S1 = pack(0.0, 0.0, 0.0, s01, s11, 0.0, 0.0, 0.0)
@@ -111,9 +112,10 @@ def _scatter_3d(support):
     @kernel()
     def scatter_3d(
         nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-        pressure, gravity, cell_size, momentum, forces,
+        pressure, acceleration, cell_size, momentum, forces,
     ):  # fmt: skip
         has_affine = momentum and affine.shape[1] > 0
+        own = len(acceleration) > 1
         groups = tasks.shape[0]
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
@@ -125,14 +127,15 @@ def _scatter_3d(support):
                             + (base[p, 2] - lower[2])
                         )
                         m, V = mass[p] * momentum, -volume[p] * forces
-                        weighs = mass[p] * forces
+                        weighs, k = mass[p] * forces, p if own else 0
                         s00, s11 = V * (stress[p, 0] - pressure[p]), V * (stress[p, 1] - pressure[p])
                         s22 = V * (stress[p, 2] - pressure[p])
                         s12, s02, s01 = V * stress[p, 3], V * stress[p, 4], V * stress[p, 5]
                         # What the particle gives, by the factor it comes with: N, ∂N/∂x, ∂N/∂y, ∂N/∂z.
                         M = pack(
                             m, m * velocity[p, 0], m * velocity[p, 1], m * velocity[p, 2],
-                            weighs * gravity[0], weighs * gravity[1], weighs * gravity[2], 0.0,
+                            weighs * acceleration[k, 0], weighs * acceleration[k, 1],
+                            weighs * acceleration[k, 2], 0.0,
                         )  # fmt: skip
                         S0 = pack(0.0, 0.0, 0.0, 0.0, s00, s01, s02, 0.0)
                         S1 = pack(0.0, 0.0, 0.0, 0.0, s01, s11, s12, 0.0)

@@ -1,4 +1,4 @@
-"""What closed forms say of the laboratory's tests that ship; docs and validation hold runs against them."""
+"""Closed forms of the shipped laboratory tests; docs and validation compare runs with them."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ Given = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Formula:
-    """A closed form of what a case measures.
+    """A closed form of a measurement of a case.
 
     Args:
         measured: name of the measurement, or of a variable of the history.
-        words: what the formula is.
-        value: of the parameters of the case.
-        band: how far, relative, a run may be off it; None for one that leaves out too much to be held to.
+        words: the name of the formula.
+        value: its value for the parameters of the case.
+        band: largest relative difference of a run; None if the formula neglects too much for a comparison.
     """
 
     measured: str
@@ -63,15 +63,15 @@ def _ratio(p: Given, stretching: float) -> float:
 
 
 def _cone_slump(p: Given, uniaxial: float) -> float:
-    """Slump of a cone whose foot is twice as wide as its top, m.
+    """Slump, m, of a cone whose base is twice as wide as its top.
 
     Schowalter & Christensen 1998, J. Rheol. 42: s/H = 1 - h0 - 2τ' ln(7/((1 + h0)³ - 1)); above h0 H the
     material has not yielded, τ' = τ0/(ρ g H) = ((1 + h0) - (1 + h0)⁻²)/6.
 
     Args:
         p: parameters.
-        uniaxial: σ/τ0 at which a column yields under its weight. The authors take 2, as of Tresca; it is √3
-            by von Mises, whose yield stress the laws here have, so that τ' becomes √3/2 τ'.
+        uniaxial: σ/τ0 at which a column yields under its weight. The authors use 2, Tresca's criterion. The
+            laws here use von Mises' criterion, which gives √3, so that τ' becomes √3/2 τ'.
     """
     relative = uniaxial / 2 * sink(p) / p["mould_height"]
     low, high = 0.0, 1.0
@@ -182,4 +182,4 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("torque_of_vane", "start of flow, 2π R² h τ0", lambda p: _vane(p, 1e-12), None),
     ],
 }  # fmt: skip
-"""By the name of the case; the first of each is the one to trust."""
+"""By the name of the case; the first formula of each case is the most accurate."""

@@ -10,12 +10,12 @@ def cylinder_torque(
 ) -> float:
     """M, N m, on the side of a cylinder that turns slowly; the fluid is sheared up to the radius β R.
 
-    Reiner & Riwlin for a cup beyond β R, where the shear stress has fallen to τ0: M = 2π β² R² h τ0, with
+    Reiner & Riwlin, for a cup that is wider than β R, where the shear stress is τ0: M = 2π β² R² h τ0, with
 
         β² - 1 - 2 ln β = 2 μ Ω/τ0
 
-    Ω → 0 gives the start of flow, 2π R² h τ0; the ends of a vane add 2R/(3h) of it (Dzuy & Boger 1983). A
-    vane carries what is between its blades along, as a cylinder does.
+    Ω → 0 gives the start of flow, 2π R² h τ0; the ends of a vane add 2R/(3h) of it (Dzuy & Boger 1983). The
+    material between the blades of a vane turns with them, so that the vane acts as a cylinder.
 
     Args:
         radius, height: R and h, m.

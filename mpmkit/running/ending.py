@@ -24,7 +24,8 @@ class Ending:
     within a band of ``KEPT`` h, with h the height of the bodies at the start. The band separates creep from
     rest: material that creeps at a constant rate leaves it, unless it needs four times the run so far to
     creep by 4 ``KEPT`` h. Small elastic oscillations stay in it, although their speed is not zero. The run
-    does not end while a wall at rest will still move, or a wall that holds the material will still vanish.
+    does not end while a wall at rest will still move, a wall that holds the material will still vanish, or a
+    force still changes.
 
     Attributes:
         ended: ``at-rest``, ``condition``, or an empty text as long as the run continues.
@@ -70,7 +71,8 @@ class Ending:
             self._low = self._high = lengths
         self._low, self._high = np.minimum(self._low, lengths), np.maximum(self._high, lengths)
         moved = not (self._high - self._low <= KEPT * simulation.case.height).all()
-        if moved or self._a_wall_has_yet_to_move():
+        waits = self._a_wall_has_yet_to_move() or self._more_comes_in()
+        if moved or waits or not simulation.settled:
             self._since, self._low, self._high = simulation.time, lengths, lengths
         kept = simulation.time - self._since >= PART * simulation.time
         return kept and self._milestones.at_rest_since is not None
@@ -78,8 +80,13 @@ class Ending:
     def _lengths(self) -> np.ndarray:
         """Spread diameter, height, and the centre of mass, m."""
         p, measures = self._simulation.particles, self._simulation.measures
+        if not len(p):
+            return np.zeros(0)
         lengths = [measures.spread(p), measures.height(p), *centre_of_mass(self._simulation)]
         return np.nan_to_num(lengths)  # no spread along a periodic axis
+
+    def _more_comes_in(self) -> bool:
+        return self._simulation.operations.sources.goes_on(self._simulation.time)
 
     def _a_wall_has_yet_to_move(self) -> bool:
         time, end = self._simulation.time, self._simulation.case.end

@@ -66,9 +66,9 @@ class Milestones:
     **At rest** means that the material does not move or spread any more. U is the largest RMS speed of the
     particles so far, h the height of the bodies at the start, and d the height of the material now. The RMS
     speed must be at most ``SLOW`` U; in a time of h / U the spread diameter must change by at most ``STILL``
-    h and the centre of mass by at most ``STILL`` d; and all this for at least h / U. These scales come from
-    the run itself, so that water and a stiff paste are judged in the same way. Small elastic oscillations of
-    material at rest do not count as motion.
+    h and the centre of mass by at most ``STILL`` d; and all this for at least h / U. Material is not at rest
+    as long as a force changes. These scales come from the run itself, so that water and a stiff paste are
+    judged in the same way. Small elastic oscillations of material at rest do not count as motion.
 
     The centre of mass tells what a spread cannot: material that fills a channel from end to end, and still
     levels. If its depths at the ends change by ∓a, linear in between, a layer of depth d and length L has its
@@ -139,7 +139,7 @@ class Milestones:
         simulation, seen = self._simulation, self._seen
         p = simulation.particles
         mass, doubled, _ = kinetics(p.mass, p.velocity)
-        speed = math.sqrt(doubled / mass)
+        speed = math.sqrt(doubled / mass) if mass else 0.0
         seen.fastest = max(seen.fastest, speed)
         passed, grown = seen.time - seen.look_time, seen.spread - seen.look_spread
         if passed > 0 and math.isfinite(grown):
@@ -149,7 +149,7 @@ class Milestones:
             seen.close = float(below and math.isnan(seen.t500))
         seen.look_time, seen.look_spread = seen.time, seen.spread
         keeps = self._keeps_its_lengths()
-        if speed > SLOW * seen.fastest or not keeps:
+        if speed > SLOW * seen.fastest or not keeps or not simulation.settled:
             seen.quiet_since = math.nan
         elif math.isnan(seen.quiet_since):
             seen.quiet_since = seen.time
@@ -158,6 +158,8 @@ class Milestones:
         """Whether the lengths are still in their band, or have left it slowly; then a new band begins."""
         seen, simulation = self._seen, self._simulation
         height, p = simulation.case.height, simulation.particles
+        if not len(p):
+            return False
         lengths = np.nan_to_num([seen.spread, *centre_of_mass(simulation)])  # no spread along a periodic axis
         if not len(seen.band_low):
             seen.band_since, seen.band_low, seen.band_high = seen.time, lengths, lengths
