@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
-from .funnels import SLICES, Sections, circles, flow, flow_time, rectangles
+from .funnels import Sections, flow_time, rectangles
 from .rotation import coaxial_torque, cylinder_torque
 
 G = 9.81
@@ -116,25 +116,8 @@ def _v_funnel(p: Given) -> float:
     return flow_time(straight + slanted, volume, sections, *_fluid(p))
 
 
-def _marsh(p: Given) -> Callable[[np.ndarray], Sections]:
-    """Sections of the cone and its nozzle at heights above the outlet, m."""
-    ends = [p["nozzle_length"], p["nozzle_length"] + p["cone_height"]]
-    return lambda z: circles(np.interp(z, ends, [p["nozzle_radius"], p["top_radius"]]))
-
-
 def _fluid(p: Given) -> tuple[float, float, float]:
     return p["density"], p["yield_stress"], p["plastic_viscosity"]
-
-
-def _marsh_rate(p: Given) -> float:
-    head = p["nozzle_length"] + p["cone_height"]
-    step = head / SLICES
-    return flow(head, step, _marsh(p)((np.arange(SLICES) + 0.5) * step), _fluid(p))
-
-
-def marsh_time(p: Given, volume: float = 1e-3) -> float:
-    """Time in which the first litre flows out of a full Marsh cone, s."""
-    return flow_time(p["nozzle_length"] + p["cone_height"], volume, _marsh(p), *_fluid(p))
 
 
 def _coaxial(p: Given) -> float:
@@ -192,9 +175,6 @@ FORMULAS: dict[str, list[Formula]] = {
     "v_funnel": [
         Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",
                 _v_funnel, None)
-    ],
-    "marsh_cone": [
-        Formula("outflow_rate", "lubrication of a Bingham fluid with a kinetic head", _marsh_rate, 0.12)
     ],
     "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],
     "vane": [

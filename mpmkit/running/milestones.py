@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -121,7 +122,8 @@ class Milestones:
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore the results so far."""
-        self._seen = _Seen(**{name: v.copy() if v.ndim else float(v) for name, v in state.items()})
+        found: dict[str, Any] = {name: v.copy() if v.ndim else float(v) for name, v in state.items()}
+        self._seen = _Seen(**found)
 
     def _watch_spread(self) -> None:
         simulation, seen = self._simulation, self._seen
