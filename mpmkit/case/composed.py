@@ -126,6 +126,7 @@ def case_model(registry: Registry) -> type[Case]:
         __base__=Body,
         __doc__=Body.__doc__,
         material=(_one_of("law", laws, "law"), Body.model_fields["material"]),
+        initial=_by_name(registry, "initial_field", Body.model_fields["initial"]),
     )
     scheme = create_model(
         "Scheme",

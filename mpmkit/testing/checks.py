@@ -13,6 +13,7 @@ from ..contracts import (
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     Operations,
     ParticleField,
     Plugin,
@@ -32,6 +33,7 @@ from . import (
     elastic,
     equations_of_state,
     flight,
+    initial_fields,
     law_promises,
     laws,
     measured,
@@ -132,6 +134,7 @@ ON_BODY_FORCES = (
     body_forces.largest,
     body_forces.settles,
 )
+ON_INITIAL_FIELDS = (initial_fields.arrays, initial_fields.batch_order)
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
 ON_DIAGNOSTICS = (
     measured.declares,
@@ -259,6 +262,12 @@ def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
             ),
         ],
     )
+
+
+def initial_field_checks(field: InitialField, *, size: float = 1.0) -> list[Check]:
+    """What every initial field must do, in each space and for each field that it can give."""
+    checks = [(check.__name__, partial(check, field, size)) for check in ON_INITIAL_FIELDS]
+    return _of("initial_field", field, [("home", partial(initial_fields.home, field)), *checks])
 
 
 def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
