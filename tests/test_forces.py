@@ -359,6 +359,7 @@ TURN = {"kind": "rotating-frame", "point": [0, 0], "rate": 3.0}
         (TILT | {"times": [0, 1, 2]}, {"gravity": None}, "vectors has 2 entries and times 3; there must be"),
         (SHORT | {"period": 0.01}, {}, "period is 0.01 s; it must be at least the 0.0500001 s of the table"),
         (SHORT | {"count": 3}, {}, "count is 3, but there is no period"),
+        (SHORT | {"count": 2.5, "period": 1}, {}, "count is 2.5; it must be a whole number"),
         (TURN | {"rates": [1, 2]}, {}, "it must have either rate, or times and rates"),
         (TURN | {"axis": [0, 0, 1]}, {}, "but in the space plane-strain it is out of the plane"),
         ({"kind": "oscilation"}, {}, 'did you mean "oscillation"?'),

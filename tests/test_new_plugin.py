@@ -16,6 +16,7 @@ LEAST = {
     "equation_of_state": 9,
     "contact": 11,
     "body_force": 14,
+    "initial_field": 6,
     "sink": 10,
     "source": 8,
     "particle_field": 9,

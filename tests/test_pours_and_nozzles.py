@@ -42,13 +42,13 @@ POUR = {
 SPEED, HEIGHT, WIDTH, THICKNESS = 0.1, 0.03, 0.02, 0.02
 PRINTED = {
     "space": "plane-strain",
-    "until": 1.0,
-    "grid": {"cell_size": 0.005, "domain": {"x": [0, 0.2], "z": [0, 0.04]}, "faces": {"z_min": "stick"}},
+    "until": 2.0,
+    "grid": {"cell_size": 0.005, "domain": {"x": [0, 0.25], "z": [0, 0.04]}, "faces": {"z_min": "stick"}},
     "sources": {
         "nozzle": {
             "kind": "nozzle",
             "radius": WIDTH / 2,
-            "points": [[0.03, HEIGHT], [0.15, HEIGHT]],
+            "points": [[0.03, HEIGHT], [0.23, HEIGHT]],
             "speeds": [SPEED],
             "fluxes": [SPEED * THICKNESS],
             "material": MORTAR,
@@ -88,10 +88,10 @@ def test_a_pour_ends_when_its_mass_is_in():
 
 @pytest.mark.slow
 def test_a_nozzle_lays_a_sheet_as_thick_as_flux_over_speed():
-    simulation = advanced(Simulation(case(PRINTED)), 1.0)
+    simulation = advanced(Simulation(case(PRINTED)), 1.95)
     p = simulation.particles
-    inside = (p.position[:, 0] > 0.06) & (p.position[:, 0] < 0.10)
-    assert p.volume[inside].sum() / 0.04 == pytest.approx(THICKNESS, rel=0.02)
+    inside = (p.position[:, 0] > 0.12) & (p.position[:, 0] < 0.18)
+    assert p.volume[inside].sum() / 0.06 == pytest.approx(THICKNESS, rel=0.02)
     assert len(np.unique(p.number)) == len(p)
 
 

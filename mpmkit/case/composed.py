@@ -145,6 +145,7 @@ def case_model(registry: Registry) -> type[Case]:
         __base__=Body,
         __doc__=Body.__doc__,
         material=(material, Body.model_fields["material"]),
+        initial=_by_name(registry, "initial_field", Body.model_fields["initial"]),
     )
     inflows = {
         name: _inflow_model(source, material)  # type: ignore[arg-type]

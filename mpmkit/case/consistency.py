@@ -20,6 +20,7 @@ from .diagnostics import diagnostic_columns
 from .draining import drain_columns
 from .ending import Until
 from .forces import check_forces, check_symmetry_of_forces, force_columns
+from .initial_fields import check_initial_fields
 from .measurement_rules import check_measurements
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
@@ -60,6 +61,7 @@ def check(case: Case) -> None:
         where = f"bodies.{number}"
         for field, vector in _velocity_vectors(body):
             _check_vector(f"{where}.velocity{field}", vector, case)
+        check_initial_fields(where, body, case)
         _check_particles_per_cell(f"{where}.particles_per_cell", body.particles_per_cell, case)
         _check_sound_speed(f"{where}.material.sound_speed", body.material, case)
         try:

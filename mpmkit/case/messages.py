@@ -167,6 +167,8 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     below = path[2:] if path[0] == "walls" else path  # the name of a wall may equal that of a kind
     anywhere = path[0] in ("scheme", "walls")
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
+    if path[0] == "bodies" and path[2:3] == ("initial",):
+        kinds = ["initial_field"]
     if path[0] in BY_NAME and not kinds:  # a source has a law as well
         kinds = [BY_NAME[path[0]]]
     if path[0] == "output":

@@ -7,16 +7,19 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from itertools import product
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, model_validator
 
 from ..contracts import (
+    Beginning,
     BodyForce,
     ConstitutiveLaw,
     Contact,
     EquationOfState,
+    InitialField,
     Mouth,
     Sink,
     Source,
@@ -32,6 +35,7 @@ from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
 from ..geometry import AnyShape
 from ..registry.audit import forces
+from ..registry.audit.initial_fields import initial_values, shape_of
 from ..spaces import SPACES, Space
 from .base import Model, name_of_directory
 from .ending import AnyUntil, latest
@@ -41,6 +45,8 @@ from .output import OutputSettings
 from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
 
 STANDARD_GRAVITY = 9.81
+SAMPLES = 9
+"""Places along each axis at which the largest speed of an initial field is looked for."""
 
 
 class Grid(Model):
@@ -125,6 +131,10 @@ class Body(Model):
     )
     velocity: InitialVelocity | None = quantity(
         "m/s", "initial velocity along each axis, or a standing wave; default: at rest", default=None
+    )
+    initial: dict[str, InitialField] = Field(
+        default={},
+        description="fields at the start: 'velocity', 'stress', or 'law.' and the name of a state variable",
     )
 
     def particles_along_axes(self, dim: int) -> tuple[int, ...]:
@@ -419,10 +429,30 @@ class Case(Model):
     def largest_energy(self) -> float:
         """Largest initial energy of a particle, J/kg: kinetic, and potential above the lowest particle."""
         fastest = max(
-            [0.0, *(body.largest_speed for body in self.bodies)]
+            [0.0, *map(self.speed_at_start, self.bodies)]
             + [self.source_speed(name, 0.0, self.end) for name in self.sources]
         )
         return self.energy_of_fall + fastest**2 / 2
+
+    def speed_at_start(self, body: Body) -> float:
+        """Largest speed of a body at the start, m/s; of a field that of samples."""
+        if "velocity" not in body.initial:
+            return body.largest_speed
+        lower, upper = body.shape.bounds(self.space_)
+        parts = np.array(list(product(np.linspace(0, 1, SAMPLES), repeat=len(lower))))
+        return float(
+            np.linalg.norm(self.at_start(body, "velocity", lower + parts * (upper - lower)), axis=1).max()
+        )
+
+    def at_start(self, body: Body, field: str, position: np.ndarray) -> np.ndarray:
+        """An initial field of a body at places, m, ``(n, dim)``: ``(n, *shape)``."""
+        shape = shape_of(field, body.material.constitutive_law, self.space_)
+        strength = float(np.linalg.norm(self.gravity_at_start))
+        up = -self.gravity_at_start / strength if strength else np.zeros(self.space_.dim)
+        low, high = body.shape.bounds(self.space_)
+        top = float(np.maximum(low * up, high * up).sum())
+        start = (self.space_, field, shape, position, body.material.density, self.gravity_at_start, top)
+        return initial_values(body.initial[field], Beginning(*start))
 
     @cached_property
     def energy_of_fall(self) -> float:

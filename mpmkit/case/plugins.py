@@ -21,6 +21,7 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
         used.append(("law", law))
         if law.uses_equation_of_state:
             used.append(("equation_of_state", material.equation_of_state))
+    used += [("initial_field", field) for body in case.bodies for field in body.initial.values()]
     for wall in case.walls.values():
         used += [("surface", wall.surface), ("contact", wall.contact)]
     used += [("source", one.source) for one in case.sources.values()]

@@ -22,6 +22,7 @@ KINDS = [
     "surface",
     "contact",
     "body_force",
+    "initial_field",
     "sink",
     "source",
     "diagnostic",

@@ -10,6 +10,7 @@ from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
+from .initial_field import Beginning, InitialField
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
@@ -29,6 +30,7 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "Beginning",
     "BodyForce",
     "Cells",
     "Column",
@@ -40,6 +42,7 @@ __all__ = [
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
+    "InitialField",
     "Kinematics",
     "Lattice",
     "Mouth",

@@ -15,6 +15,7 @@ from .body_force import BodyForce
 from .contact import Contact
 from .diagnostic import Diagnostic, ParticleField
 from .equation_of_state import EquationOfState
+from .initial_field import InitialField
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
 from .redistribution import Redistribution
@@ -97,6 +98,11 @@ def mpmkit_body_forces() -> Iterable[type[BodyForce]]:  # type: ignore[empty-bod
 
 
 @hookspec
+def mpmkit_initial_fields() -> Iterable[type[InitialField]]:  # type: ignore[empty-body]
+    """Initial fields of this module."""
+
+
+@hookspec
 def mpmkit_sinks() -> Iterable[type[Sink]]:  # type: ignore[empty-body]
     """Sinks of this module."""
 
@@ -118,6 +124,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
     "body_force": ("mpmkit_body_forces", BodyForce),
+    "initial_field": ("mpmkit_initial_fields", InitialField),
     "sink": ("mpmkit_sinks", Sink),
     "source": ("mpmkit_sources", Source),
     "diagnostic": ("mpmkit_diagnostics", Diagnostic),

@@ -24,7 +24,7 @@ def rough_seconds(case: Case, threads: int = 1) -> float:
     groups = [material_group(case, material, slice(0, 0)) for material in case.materials.values()]
     materials = [(group, group.wave_speed) for group in groups]
     fastest = max(
-        [0.0, *(body.largest_speed for body in case.bodies)]
+        [0.0, *map(case.speed_at_start, case.bodies)]
         + [case.source_speed(name, 0.0, case.end) for name in case.sources]
     )
     step, _ = choose_step(case.scheme, limits(materials, case.grid.cell_size, fastest, case.scale.rate))

@@ -44,7 +44,10 @@ def _common_middle(case: Case) -> tuple[float, float] | None:
     pulled = any(case.gravity_vector[:2]) or case.varying_forces
     if case.space != "3d" or pulled or case.sinks or case.sources:
         return None
-    middles = {body.shape.middle(case.space_) if _falls(body.velocity) else None for body in case.bodies}
+    middles = {
+        body.shape.middle(case.space_) if _falls(body.velocity) and not body.initial else None
+        for body in case.bodies
+    }
     return middles.pop() if len(middles) == 1 else None
 
 

@@ -29,6 +29,7 @@ KINDS = {
     "surface": "surface",
     "contact": "contact",
     "body_force": "body force",
+    "initial_field": "initial field",
     "sink": "sink",
     "source": "source",
     "diagnostic": "diagnostic",

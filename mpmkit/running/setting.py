@@ -38,7 +38,7 @@ def _floor_and_release(case: Case) -> list[str]:
     if face in ("open", "periodic"):
         return []
     said = [f"floor: {name} is {_in_words(face)}"]
-    if not case.bodies or any(body.largest_speed for body in case.bodies):
+    if not case.bodies or any(map(case.speed_at_start, case.bodies)):
         return said
     if case.walls:
         names = ", ".join(f"walls.{name}" for name in case.walls)

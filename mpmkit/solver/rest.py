@@ -43,7 +43,7 @@ def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
         return False
     ratio = np.empty_like(weight)
     for group in particles.present_groups:
-        found = _ratio_under(group, weight[group.part])
+        found = ratio_under(group, weight[group.part])
         if found is None:
             return False
         ratio[group.part] = found
@@ -150,7 +150,7 @@ def _height_on_floor(grid: Grid, p: Particles, group: Group, axis: int, upwards:
     return tallest
 
 
-def _ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
+def ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
     """J at which p J equals a given weight, by bisection; None if there is no such J."""
     low, high = np.full(len(weight), LEAST_RATIO), np.ones(len(weight))
     if not (group.pressure(low) * low >= weight).all():

@@ -12,6 +12,7 @@ from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
 from ..registry.audit.forces import settles, shortest_period
 from ..registry.blame import blaming_plugins
+from .beginning import begin_with_fields
 from .diagnosed import diagnosed
 from .draining import Drains
 from .grid import Grid
@@ -67,8 +68,10 @@ class Simulation:
         case = self.case
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
-        self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
-        begins = particles is None and not self.starts_under_weight
+        pressed = particles is None and begin_with_fields(case, self.particles, self.grid.lower)
+        begins = particles is None and not pressed
+        self.starts_under_weight = begins and put_under_weight(case, self.grid, self.particles)
+        begins = begins and not self.starts_under_weight
         self.swinging = swinging(case, self.grid, self.particles) if begins else None
         """The warning about a pressure that oscillates about the hydrostatic pressure."""
         self.operations = SceneOperations(case, self.grid, self.particles)

@@ -13,6 +13,7 @@ from ..contracts import (
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     Operations,
     ParticleField,
     Plugin,
@@ -33,6 +34,7 @@ from . import (
     elastic,
     equations_of_state,
     flight,
+    initial_fields,
     law_promises,
     laws,
     measured,
@@ -134,6 +136,7 @@ ON_BODY_FORCES = (
     body_forces.largest,
     body_forces.settles,
 )
+ON_INITIAL_FIELDS = (initial_fields.arrays, initial_fields.batch_order)
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
 ON_SOURCES = (sources.pushes, sources.fastest, sources.remembers_nothing)
 ON_DIAGNOSTICS = (
@@ -262,6 +265,12 @@ def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
             ),
         ],
     )
+
+
+def initial_field_checks(field: InitialField, *, size: float = 1.0) -> list[Check]:
+    """What every initial field must do, in each space and for each field that it can give."""
+    checks = [(check.__name__, partial(check, field, size)) for check in ON_INITIAL_FIELDS]
+    return _of("initial_field", field, [("home", partial(initial_fields.home, field)), *checks])
 
 
 def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:

@@ -10,6 +10,7 @@ from ..contracts import (
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     ParticleField,
     Redistribution,
     Refinement,
@@ -27,6 +28,7 @@ from .checks import (
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
+    initial_field_checks,
     law_checks,
     order_checks,
     particle_field_checks,
@@ -170,6 +172,16 @@ def body_force_tests(force: BodyForce, *, size: float = 1.0) -> Test:
         size: m; places reach so far from the origin along each axis.
     """
     return _tests(body_force_checks(force, size=size))
+
+
+def initial_field_tests(field: InitialField, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for an initial field.
+
+    Args:
+        field: with parameters.
+        size: m; places reach so far from the origin along each axis.
+    """
+    return _tests(initial_field_checks(field, size=size))
 
 
 def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:

@@ -6,6 +6,7 @@ import body_force_mutants
 import contact_mutants
 import diagnostic_mutants
 import equation_of_state_mutants
+import initial_field_mutants
 import law_mutants
 import numpy as np
 import order_mutants
@@ -28,6 +29,7 @@ from mpmkit.testing import (
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
+    initial_field_checks,
     law_checks,
     law_tests,
     order_checks,
@@ -196,12 +198,13 @@ CHECKS = {
     "surface": surface_checks,
     "contact": contact_checks,
     "body_force": body_force_checks,
+    "initial_field": initial_field_checks,
     "sink": sink_checks,
     "source": source_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "body_force", "sink", "source", "diagnostic")
+NEED_PARAMETERS = ("surface", "contact", "body_force", "initial_field", "sink", "source", "diagnostic")
 """Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
@@ -294,6 +297,12 @@ OTHER_MUTANTS = [
     ("body_force", body_force_mutants.Weaker, "largest 3d"),
     ("body_force", body_force_mutants.Restless, "settles plane-strain"),
     ("body_force", body_force_mutants.NoPeriod, "settles 3d"),
+    ("initial_field", initial_field_mutants.Nowhere, "home"),
+    ("initial_field", initial_field_mutants.SaysNothing, "home"),
+    ("initial_field", initial_field_mutants.OneForAll, "arrays"),
+    ("initial_field", initial_field_mutants.NoNumber, "arrays"),
+    ("initial_field", initial_field_mutants.Moves, "arrays"),
+    ("initial_field", initial_field_mutants.KnowsTheOthers, "batch order"),
     ("sink", sink_mutants.Nowhere, "home"),
     ("sink", sink_mutants.SaysNothing, "home"),
     ("sink", sink_mutants.Rows, "takes something plane-strain"),
@@ -351,6 +360,7 @@ OTHER_MUTANTS = [
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
         ("body_force", body_force_mutants.Pulse),
+        ("initial_field", initial_field_mutants.Rising),
         ("sink", sink_mutants.Below),
         ("source", source_mutants.Tap),
         ("diagnostic", diagnostic_mutants.Fastest),

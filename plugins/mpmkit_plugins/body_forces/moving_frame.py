@@ -31,8 +31,8 @@ class MovingFrame(BodyForce):
         "m/s", "velocity w of the frame along each axis at each of the times", min_length=2
     )
     period: float | None = quantity("s", "the table is repeated after it; default: never", default=None, gt=0)
-    count: int | None = quantity(
-        "1", "how often the table is run through; default: to the end of the run", default=None, gt=0
+    count: float | None = quantity(
+        "1", "how often the table is run through, a whole number; default: to the end", default=None, ge=1
     )
 
     @model_validator(mode="after")
@@ -48,7 +48,11 @@ class MovingFrame(BodyForce):
                     f"times has {after:g} s after {before:g} s; each must be above the one before"
                 )
         if self.period is None and self.count is not None:
-            raise ValueError(f"count is {self.count}, but there is no period; give both, or leave out count")
+            raise ValueError(
+                f"count is {self.count:g}, but there is no period; give both, or leave out count"
+            )
+        if self.count is not None and not self.count.is_integer():
+            raise ValueError(f"count is {self.count:g}; it must be a whole number")
         lasts = self.times[-1] - self.times[0]
         if self.period is not None and self.period < lasts:
             raise ValueError(f"period is {self.period:g} s; it must be at least the {lasts:g} s of the table")
