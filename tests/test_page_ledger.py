@@ -88,7 +88,7 @@ def test_what_the_case_measures_is_on_the_page(slump):
     assert (chart["title"], chart["unit"]) == ("Mass flux through r = 0.12 m", "kg/s")
     np.testing.assert_allclose(curve["values"], history["gate.mass_flux"], rtol=1e-6)
     part = float(history.part[-1])
-    assert f"part {part:.3f} height over the first, at the end" in text_of(page)
+    assert f"Part {part:.3f} height over the first, at the end" in text_of(page)
 
 
 def test_a_field_of_the_case_is_among_the_colours(slump):

@@ -87,5 +87,5 @@ def flat(shape: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def laws_of(case: Case) -> Iterable[ConstitutiveLaw]:
-    """The law of each body."""
-    return (body.material.constitutive_law for body in case.bodies)
+    """The law of each body and source."""
+    return (material.constitutive_law for material in case.materials.values())

@@ -157,9 +157,12 @@ def _measurements(source: Source) -> list[tuple[str, str, str]]:
         return []
     found = []
     for name, measurement in source.results.case.get("measurements", {}).items():
-        value, unit = _last(source, name), unit_of(measurement["unit"])
-        shown = "none" if value is None else f"{number(value)} {unit}".rstrip()
-        found.append((name.replace("_", " "), shown, f"{measurement['description']}, {_when(source)}"))
+        value, unit, label = _last(source, name), unit_of(measurement["unit"]), name.replace("_", " ")
+        shown = "none"
+        if value is not None:
+            shown = length(value) if unit == "m" else f"{number(value)} {unit}".rstrip()
+        said = f"{measurement['description']}, {_when(source)}"
+        found.append((f"{label[:1].upper()}{label[1:]}", shown, said))
     return found
 
 
