@@ -34,7 +34,7 @@ MACH_NUMBERS = (1 / 500, 0.5)
 
 def implausible(case: Case) -> Iterator[str]:
     """A sentence for each value that is probably not in SI units: the value, and the usual range."""
-    strength = float(np.linalg.norm(case.gravity_vector))
+    strength = float(np.linalg.norm(case.gravity_at_start))
     if strength > STRONGEST:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in mm/s²?"
     elif abs(strength / IN_CENTIMETRES - 1) < CLOSE:
