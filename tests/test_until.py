@@ -105,7 +105,7 @@ def test_an_interrupted_run_ends_where_it_would_have(runs, tmp_path, monkeypatch
 def scripted(spread, speed, height=0.3, walls=()):
     """A stand-in for a simulation, whose spread and RMS speed follow functions of time; 1 m/s at first."""
     case = parse_case(CAKE | {"until": {"rest": True, "at_most": 100}})
-    scene = SimpleNamespace(time=0.0, steps=0, case=case.model_copy())
+    scene = SimpleNamespace(time=0.0, steps=0, case=case.model_copy(), settled=True)
     scene.case.__dict__["height"] = height
     scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)), position=np.zeros((3, 2)))
     scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: 0.02)
