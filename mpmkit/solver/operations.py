@@ -51,7 +51,8 @@ class SceneOperations:
         self.faces = Faces(grid)
         self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
         support = scheme.shape.support
-        self._scatter, self._gather = scatter(dim, support), gather(dim, support)
+        self._scatter = scatter(dim, support)
+        self._gather = gather(dim, support, scheme.velocity.affine)
         self._gradient_due = False
         self._begun = 0
         self._auditing = self._rehearsing = True
