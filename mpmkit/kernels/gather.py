@@ -200,23 +200,28 @@ def _gather_3d(support, affine):
 def gather_scalar(dim: int, support: int):
     """The kernel that takes Σ N value of a nodal field to the particles, into ``out (n,)``.
 
-    Rows are read as whole vectors, so that ``field`` must have ``LANES`` more doubles behind it than nodes.
+    Rows are read as four doubles, so that ``field`` must have three more of them behind it than nodes.
     """
 
     @kernel()
     def gather_scalar(field, strides, lower, base, weight, out):
         n, last = len(base), dim - 1
-        planes = support if dim == 3 else 1
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
         for chunk in prange(chunk_count(n)):
             for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-                first = 0
-                for d in range(dim):
-                    first += (base[p, d] - lower[d]) * strides[d]
+                first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
                 total = zero()
-                for a in range(support):
-                    for b in range(planes):
-                        w = weight[p, 0, a] * (weight[p, 1, b] if dim == 3 else 1.0)
-                        total = plus(total, w, load(field, first + a * strides[0] + b * strides[1]))
+                if dim == 2:
+                    for a in range(support):
+                        total = plus(total, weight[p, 0, a], load_twice(field, first + a * plane))
+                else:
+                    first += (base[p, 1] - low1) * line
+                    for a in range(support):
+                        of_plane = zero()
+                        for b in range(support):
+                            row = load_twice(field, first + a * plane + b * line)
+                            of_plane = plus(of_plane, weight[p, 1, b], row)
+                        total = plus(total, weight[p, 0, a], of_plane)
                 value = weight[p, last, 0] * lane(total, 0) + weight[p, last, 1] * lane(total, 1)
                 if support > 2:
                     value += weight[p, last, 2] * lane(total, 2)

@@ -85,7 +85,7 @@ def scatter(dim: int, support: int):
     ``hoop`` has columns. ``stress`` holds the extra stress; the Cauchy stress is that minus ``pressure``.
     ``tasks[g, colour, t]`` is the first particle of task t of a colour in group g.
 
-    Both sums have one form. With M = (m, m v, m g) and, for each axis d, the columns D_d = (0, m C_d, -V σ_d),
+    Both sums have one form. With M = (m, m v, m g) and, for each axis d, the column D_d = (0, m C_d, -V σ_d),
     a particle adds to the record of a node
 
         N0 N1 N2 M + K0 N1 N2 D_0 + N0 K1 N2 D_1 + N0 N1 K2 D_2,
@@ -123,7 +123,10 @@ def _scatter_2d(support):
                         C = load_first(affine, 4 * p, 4) if has_affine else zero()
                         m *= cell_size
                         factor = pack(0.0, m, m, V, V, 0.0, 0.0, 0.0)
-                        D0, D1 = multiply(factor, _COLUMN_0_2D(C, sigma)), multiply(factor, _COLUMN_1_2D(C, sigma))
+                        D0, D1 = (
+                            multiply(factor, _COLUMN_0_2D(C, sigma)),
+                            multiply(factor, _COLUMN_1_2D(C, sigma)),
+                        )
                         of_ring = scale(V * lane(sigma, 2), of_hoop)
                         x0, x1 = centroid(weight, p, 0, support), centroid(weight, p, 1, support)
                         k0, k1 = slope(weight, gradient, p, 1, 0, x1), slope(weight, gradient, p, 1, 1, x1)
@@ -219,23 +222,37 @@ def scatter_pairs(dim: int, support: int):
     @kernel()
     def scatter_pairs(pairs, strides, lower, tasks, base, weight, measure, values):
         groups, last = tasks.shape[0], dim - 1
-        planes = support if dim == 3 else 1
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
                 for g in range(groups):
                     for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
-                        first = 0
-                        for d in range(dim):
-                            first += (base[p, d] - lower[d]) * strides[d]
+                        first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
                         m, f = measure[p], measure[p] * values[p]
                         w0, w1 = weight[p, last, 0], weight[p, last, 1]
                         w2 = weight[p, last, 2] if support > 2 else 0.0
                         w3 = weight[p, last, 3] if support > 3 else 0.0
                         row = pack(m * w0, f * w0, m * w1, f * w1, m * w2, f * w2, m * w3, f * w3)
-                        for a in range(support):
-                            for b in range(planes):
-                                w = weight[p, 0, a] * (weight[p, 1, b] if dim == 3 else 1.0)
-                                at = PAIR * (first + a * strides[0] + b * strides[1])
-                                store(pairs, at, plus(load(pairs, at), w, row))
+                        if dim == 2:
+                            for a in range(support):
+                                at = PAIR * (first + a * plane)
+                                store(pairs, at, plus(load(pairs, at), weight[p, 0, a], row))
+                        else:
+                            first += (base[p, 1] - low1) * line
+                            w0, w1 = weight[p, 1, 0], weight[p, 1, 1]
+                            w2 = weight[p, 1, 2] if support > 2 else 0.0
+                            w3 = weight[p, 1, 3] if support > 3 else 0.0
+                            for a in range(support):
+                                of_plane = scale(weight[p, 0, a], row)
+                                at = PAIR * (first + a * plane)
+                                store(pairs, at, plus(load(pairs, at), w0, of_plane))
+                                at += PAIR * line
+                                store(pairs, at, plus(load(pairs, at), w1, of_plane))
+                                if support > 2:
+                                    at += PAIR * line
+                                    store(pairs, at, plus(load(pairs, at), w2, of_plane))
+                                if support > 3:
+                                    at += PAIR * line
+                                    store(pairs, at, plus(load(pairs, at), w3, of_plane))
 
     return scatter_pairs

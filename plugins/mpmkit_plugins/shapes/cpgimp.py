@@ -72,7 +72,7 @@ def _averages(x, l, inverse_cell):
 
 @kernel()
 def _fill_whole(x, l, base, weight, gradient, inverse_cell):
-    """Of flat arrays, so that the compiler knows that no two numbers of a table overlap, and takes several."""
+    """Of flat arrays: the compiler then sees that no two entries overlap, and takes several at once."""
     n = len(x)
     for chunk in prange(chunk_count(n)):
         begin, end = chunk * CHUNK, min(n, (chunk + 1) * CHUNK)
