@@ -55,7 +55,8 @@ class SceneOperations:
         spacing = min(grid.cell_size / min(one.particles_along_axes(dim)) for one in case.filled)
         self.stage = Stage(scheme, grid, self.walls, particles, radial, case.gravity_vector, spacing)
         support = scheme.shape.support
-        self._scatter, self._gather = scatter(dim, support), gather(dim, support)
+        self._scatter = scatter(dim, support)
+        self._gather = gather(dim, support, scheme.velocity.affine)
         self._gradient_due = False
         self._begun = 0
         self._auditing = self._rehearsing = True
