@@ -103,6 +103,12 @@ def test_what_came_in_is_in_the_ledger_and_in_the_history(tmp_path):
     assert summary["source_mass"] == {"pump": mass[-1]}
 
 
+def test_a_scene_that_begins_empty_has_a_report(tmp_path):
+    mpmkit.run(case(until=0.1, output={"report": True}), tmp_path / "run")
+    page = (tmp_path / "run" / "report" / "index.html").read_text()
+    assert "put in by sources" in page
+
+
 def test_a_column_that_is_filled_and_drained_loses_no_mass():
     """Material stands between a pump and a drain: mass inside = start + in - out."""
     body = {"shape": {"kind": "box", "lower": [0, 0], "upper": [0.12, 0.03]}, "material": OIL}

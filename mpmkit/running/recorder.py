@@ -128,8 +128,9 @@ class Recorder:
             self._add_row()
 
     def add_last_frame(self) -> None:
-        """Add a frame of the present step if there is none."""
-        if self.frames is not None and self._last_frame != self.simulation.steps:
+        """Add a frame of the present step if there is none; a scene that is still empty has no frames."""
+        missing = self._last_frame != self.simulation.steps and len(self.simulation.particles) > 0
+        if self.frames is not None and missing:
             self._add_frame()
 
     def add_last_moment(self) -> None:

@@ -61,9 +61,12 @@ def _mass(source: Source) -> list[tuple[str, str]]:
     mass = source.results.series("total_mass")
     if mass is None:
         return []
-    lost = (mass[-1] - mass[0]) / mass[0]
     whole = {"axisymmetric": "of the whole body", "plane-strain": "of a slice 1 m thick"}
     of = whole.get(source.space.name, "of the part that is simulated")
+    if source.results.series("mass_in") is not None:  # it may begin empty
+        first, last = (f"{number(float(mass[row]), 4)} kg" for row in (0, -1))
+        return [("Mass", f"{first} at the start, {last} at the end, {of}")]
+    lost = (mass[-1] - mass[0]) / mass[0]
     change = "unchanged" if abs(lost) < 1e-9 else f"changed by {percent(lost)}"
     return [("Mass", f"{number(float(mass[0]), 4)} kg {of}; {change} from start to end")]
 
