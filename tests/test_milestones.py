@@ -45,7 +45,7 @@ def scripted(spread, speed=lambda t: 1.0, step=0.01, height=0.1, centre=lambda t
     material is as high at all times."""
     case = SimpleNamespace(height=height, space_=SimpleNamespace(radial=False))
     scene = SimpleNamespace(
-        time=0.0, steps=0, case=case, grid=SimpleNamespace(periodic=np.zeros(2, dtype=bool))
+        time=0.0, steps=0, case=case, settled=True, grid=SimpleNamespace(periodic=np.zeros(2, dtype=bool))
     )
     scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)), position=np.zeros((3, 2)))
     scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: height)

@@ -158,7 +158,7 @@ class Milestones:
         """Whether the lengths are still in their band, or have left it slowly; then a new band begins."""
         seen, simulation = self._seen, self._simulation
         height, p = simulation.case.height, simulation.particles
-        if not len(p):
+        if not len(p.mass):
             return False
         lengths = np.nan_to_num([seen.spread, *centre_of_mass(simulation)])  # no spread along a periodic axis
         if not len(seen.band_low):
