@@ -39,7 +39,8 @@ def measure(chosen: argparse.Namespace) -> int:
     """Run the tests; returns pytest's exit status."""
     if not (chosen.only or chosen.resume):
         records.clear(RECORDS)
-    command = [sys.executable, "-m", "pytest", "tests/validation", "-q"]
+    one_by_one = ["-p", "no:xdist"]  # so that the times of the tests mean something
+    command = [sys.executable, "-m", "pytest", "tests/validation", "-q", *one_by_one]
     command += ["-m", "not slow" if chosen.fast else "slow or not slow"]
     if chosen.only:
         command += ["-k", chosen.only]

@@ -8,6 +8,20 @@ os.environ["MPMKIT_PLUGINS"] = ""
 
 import numba
 import pytest
+from third_party import distribution  # noqa: F401 - a fixture of more than one file
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config):
+    """Whole folders of tests run on all cores; single files in this process, which starts at once.
+
+    ``-n`` decides otherwise: ``pytest -n 0`` runs everything in this process.
+    """
+    here = "PYTEST_XDIST_WORKER" not in os.environ and config.pluginmanager.hasplugin("xdist")
+    if here and config.option.numprocesses is None and all(map(os.path.isdir, config.args)):
+        config.option.numprocesses = "auto"
+        if config.option.dist == "no":
+            config.option.dist = "worksteal"
 
 
 @pytest.fixture(autouse=True)

@@ -41,7 +41,7 @@ class Now(Executor):
         return future
 
 
-def fragile(data, threads):
+def fragile(data, threads, page):
     """In the place of a run: nothing, or the end of the process."""
     if data["until"] == DEADLY:
         os.kill(os.getpid(), signal.SIGKILL)

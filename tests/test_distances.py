@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mpmkit.geometry import Box, Cylinder, Frustum, Inverted, Mesh, Sphere
+from mpmkit.geometry import Box, Cylinder, Frustum, Inverted, Mesh, Polygon, Sphere
 from mpmkit.spaces import SPACES
 
 FRUSTUM = Frustum(kind="frustum", bottom_radius=0.1, top_radius=0.05, height=0.3)
@@ -13,6 +13,8 @@ CONE = Frustum(kind="frustum", bottom_radius=0.0, top_radius=0.1, height=0.2)
 CYLINDER = Cylinder(kind="cylinder", radius=0.1, height=0.2)
 BOX = Box(kind="box", lower=[0.0, -0.1], upper=[0.2, 0.1])
 BOX_3D = Box(kind="box", lower=[0.0, -0.1, 0.0], upper=[0.2, 0.1, 0.3])
+TRIANGLE = Polygon(kind="polygon", corners=[[0, 0], [0.3, 0], [0, 0.4]])
+PRISM = Polygon(kind="polygon", corners=TRIANGLE.corners, y=[0.0, 0.2])
 FLAT, ROUND, SOLID = SPACES["plane-strain"], SPACES["axisymmetric"], SPACES["3d"]
 SLANT = math.hypot(0.3, 0.05)
 T = 0.02
@@ -43,6 +45,20 @@ def at(solid, *points):
         (BOX, FLAT, [0.01, 0.0], -0.01, [-1, 0]),
         (BOX_3D, SOLID, [0.22, 0.11, 0.32], 0.03, [2, 1, 2]),  # its corner
         (Sphere(kind="sphere", centre=[0, 0.1], radius=0.1), ROUND, [0.12, 0.26], 0.1, [3, 4]),
+        (Sphere(kind="sphere", centre=[0, 0], radius=0.1, inner_radius=0.04), FLAT, [0.03, 0], 0.01, [-1, 0]),
+        (
+            Sphere(kind="sphere", centre=[0, 0], radius=0.1, inner_radius=0.04),
+            FLAT,
+            [0.06, 0],
+            -0.02,
+            [-1, 0],
+        ),
+        (TRIANGLE, FLAT, [0.23, 0.26], 0.1, [4, 3]),
+        (TRIANGLE, FLAT, [0.04, 0.2], -0.04, [-1, 0]),
+        (TRIANGLE, ROUND, [0.0, 0.02], -0.02, [0, -1]),  # the axis is inside, and no face
+        (PRISM, SOLID, [0.23, 0.1, 0.26], 0.1, [4, 0, 3]),
+        (PRISM, SOLID, [0.1, 0.19, 0.1], -0.01, [0, 1, 0]),
+        (PRISM, SOLID, [0.12 + 0.03 * 0.8, -0.04, 0.24 + 0.03 * 0.6], 0.05, [0.6 * 0.8, -0.8, 0.6 * 0.6]),
     ],
 )
 def test_distance_and_direction(shape, space, point, distance, gradient):

@@ -2,6 +2,7 @@
 "known."""
 
 import json
+import re
 import shutil
 
 import numpy as np
@@ -132,7 +133,11 @@ def test_what_a_fit_leaves_behind(of_a_curve):
         assert float(best.spread_diameter.isel(time=0)) == pytest.approx(0.2)
     page = (out / "fit.html").read_text(encoding="utf-8")
     assert YIELD_STRESS in page
-    assert "misfit.png" in page
+    assert page.count("data:image/png;base64,") == len(list(out.glob("*.png")))
+    links = re.findall(r'<a href="(members/[^"]*)">slump</a>', page)
+    assert len(links) == len(set(links)) == written["runs"]
+    best = (out / links[0]).read_text(encoding="utf-8")  # those that fit best come first
+    assert float(re.match(rf"{YIELD_STRESS} = ([\d.]+)", best)[1]) == pytest.approx(150, rel=0.01)
 
 
 def test_the_flow_curve_has_the_band_of_its_parameters(of_a_curve):

@@ -10,7 +10,18 @@ import pytest
 import mpmkit
 from mpmkit.case import parse_case
 from mpmkit.errors import GuardStop
-from mpmkit.solver.ledger import CAUSES, ENERGY, GRAVITY, MASS, OUT, REDISTRIBUTION, REFINEMENT, REST, WALLS
+from mpmkit.solver.ledger import (
+    CAUSES,
+    ENERGY,
+    FORCES,
+    GRAVITY,
+    MASS,
+    OUT,
+    REDISTRIBUTION,
+    REFINEMENT,
+    REST,
+    WALLS,
+)
 from mpmkit.solver.simulation import Simulation
 
 MUD = {"law": "bingham-evp", "density": 1500, "yield_stress": 20, "plastic_viscosity": 5, "sound_speed": 15}
@@ -74,6 +85,18 @@ KINDS = {
     "no redistribution": {"scheme": {"redistribution": "none"}},
     "flip": {"scheme": {"velocity": "flip", "order": "usf"}},
     "musl": {"scheme": {"order": "musl"}},
+    "forces": {
+        "gravity": None,
+        "forces": {
+            "tilt": {"kind": "gravity-table", "times": [0, 0.05], "vectors": [[0, -9.81], [4, -9]]},
+            "shake": {"kind": "oscillation", "amplitude": [0, 0.001], "frequency": 40},
+        },
+        "grid": COLUMN["grid"] | {"faces": {"x_min": "slip", "x_max": "slip", "z_min": "stick"}},
+    },
+    "rotation": {
+        "forces": {"turn": {"kind": "rotating-frame", "point": [0.1, 0], "rate": 3}},
+        "grid": COLUMN["grid"] | {"faces": {"x_min": "slip", "x_max": "slip", "z_min": "stick"}},
+    },
     "sink": {"sinks": {"drain": DRAIN}},
     "open face": {
         "grid": COLUMN["grid"] | {"domain": {"x": [0, 0.24], "z": [0, 0.3]},
@@ -103,11 +126,13 @@ def test_energy_is_dissipated_and_not_made(kind):
     """What is left over is what the material dissipates: negative, and small before anything has moved."""
     simulation, account = advanced(200, **KINDS[kind])
     energies = account[:, ENERGY]
-    supply = energies[0] + abs(energies[GRAVITY]) + abs(energies[WALLS])
+    supply = energies[0] + abs(energies[GRAVITY]) + abs(energies[FORCES]) + abs(energies[WALLS])
     assert energies[REST] < 0.01 * supply
     assert energies[REST] > -supply
     if kind == "wall that moves":
         assert energies[WALLS] == simulation.walls_work > 0
+    if kind in ("forces", "rotation"):
+        assert energies[FORCES] == simulation.force_work.sum() != 0
     if kind == "refinement":
         assert simulation.refiner.acts
         assert energies[REDISTRIBUTION] == 0

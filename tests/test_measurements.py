@@ -65,6 +65,38 @@ def test_depths_and_the_front_of_a_block_are_its_own(space):
     assert history["ratio"].attrs["units"] == "1"
 
 
+def test_the_depth_at_a_point_is_that_of_a_step():
+    """A block fills one half of the domain along y; a second, of half of its height, the other half."""
+    scene = case("3d", high=("depth(0.05, 0.01)", "m"), low=("depth(0.05, 0.035)", "m"),
+                 edge=("depth(0.1, 0.02)", "m"))  # fmt: skip
+    block = scene["bodies"][0]
+    scene["bodies"] = [
+        block | {"shape": {"kind": "box", "lower": [0, y, 0], "upper": [0.1, y + 0.02, top]}}
+        for y, top in ((0, 0.04), (0.02, 0.02))
+    ]
+    first = mpmkit.run(mpmkit.parse_case(scene)).isel(time=0)
+    found = [float(first[name]) for name in ("high", "low", "edge")]
+    assert found == pytest.approx(
+        [0.04, 0.02, (0.04 + 0.02) / 4], rel=1e-12
+    )  # the edge is a quarter of a cell
+    scene["measurements"]["high"]["formula"] = "depth(0.05, 0.1)"
+    with pytest.raises(CaseError, match=r"one along y, from 0 to 0\.04 m"):
+        mpmkit.parse_case(scene)
+
+
+def test_the_outflow_is_what_a_sink_takes_between_two_rows():
+    """A block that slides at 1 m/s out of the domain."""
+    scene = case(rate=("outflow('end')", "kg/s"))
+    scene["bodies"][0] |= {"velocity": [1.0, 0.0]}
+    scene["bodies"][0]["shape"] = {"kind": "box", "lower": [0.1, 0], "upper": [0.2, 0.05]}
+    scene["grid"]["faces"] = {"z_min": "slip"}
+    scene |= {"gravity": [0, 0], "sinks": {"end": {"kind": "face", "face": "x_max"}}}
+    history = mpmkit.run(mpmkit.parse_case(scene))
+    taken = np.diff(history["mass_out"].values) / np.diff(history["time"].values)
+    np.testing.assert_allclose(history["rate"].values[1:], taken)
+    assert history["rate"].values[-1] == pytest.approx(2000 * 0.05 * 1.0, rel=0.05)
+
+
 def test_no_volume_is_lost_at_a_wall():
     """The depths of all strips of a cell add up to the volume of what has flowed against a wall."""
     strips = {f"d{k}": (f"depth({0.01 * k + 0.005})", "m") for k in range(20)}
@@ -96,6 +128,8 @@ def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
         ("tip", "depth(0.3)", "depth takes one place along x, from 0 to 0.2 m"),
         ("tip", "depth('x')", "a name in quotes stands where a number must"),
         ("push", "force('lid', 'z')", "force takes the name of a wall ('z_min') and an axis ('x', 'z')"),
+        ("gone", "outflow('drain')", "outflow takes the name of a sink (there is none), in quotes"),
+        ("mass_out", "front()", "measurements has one called 'mass_out'"),
         ("push", "torque('lid')", "torque takes the name of a wall ('z_min')"),
         ("tip", "hight", "there is no 'hight'; did you mean 'height'?"),
         ("height", "front()", "measurements has one called 'height'"),

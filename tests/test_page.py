@@ -68,7 +68,8 @@ def test_the_headline_comes_first_and_says_what_never_happened(slump):
         "Flow",
         "Histories",
         "Materials",
-        "Balance of mass and energy",
+        "Balance of mass, momentum and energy",
+        "Forces of the walls",
         "Numerics and cautions",
         "How the run was made",
     ]

@@ -101,7 +101,7 @@ def test_expected_memory_has_room_for_a_redistribution(file):
     simulation.particles.velocity_gradient[:, 0, 1] = 1.0
     peaks = []
     for _ in range(2):  # at first there is code to be loaded as well
-        operations.stage.shear = operations.stage.time = 0.1
+        operations.stage.shear = operations.stage.elapsed = 0.1
         operations.stage.restore(operations.stage.state())  # without the blocks of nodes that it keeps
         tracemalloc.start()
         try:

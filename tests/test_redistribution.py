@@ -121,7 +121,7 @@ def test_even_particles_stay_where_they_are(space):
     simulation.operations.begin()
     p.velocity_gradient[:, 0, 1] = 3.0
     before = {name: array.copy() for name, array in p.arrays().items()}
-    simulation.operations.stage.shear, simulation.operations.stage.time = 1.0, 0.3
+    simulation.operations.stage.shear, simulation.operations.stage.elapsed = 1.0, 0.3
     simulation.operations.stage.redistribute_if_due(
         simulation.operations.window, simulation.operations.sorting
     )
@@ -159,7 +159,7 @@ def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
             lambda ops: spread.append(np.std(ops.places.at_particles(ops.places.crowding()))),
         )
         stage.redistribution = even
-        stage.shear = stage.time = 0.1
+        stage.shear = stage.elapsed = 0.1
         assert stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
         simulation.operations._sort()
     assert spread[-1] < 0.4 * spread[0]
@@ -184,6 +184,37 @@ def test_every_full_cell_weighs_what_it_is(space):
     assert size @ found["weights"] == pytest.approx((CELLS * DX) ** len(AXES[space]), rel=1e-12)
 
 
+def test_weighted_volumes_fill_each_cell_where_most_boxes_lie_across_two():
+    """Rows at 0.27, 1.15, 1.95, ... cells: sheared material lies so at a wall.
+
+    The filling of a cell is then wrong by up to 10 %. One pass of the weights leaves 2 %, three leave 0.3 %.
+    """
+    simulation = filled("plane-strain", {"plane-strain": {**SEAMED["plane-strain"], "z_max": "stick"}})
+    p = simulation.particles
+    order = np.argsort(p.position[:, 1], kind="stable")
+    rows = np.array([0.27, 1.15, 1.95, 2.7, 3.3, 4.05, 4.85, 5.73]) * DX
+    p.position[order, 1] = np.repeat(rows, len(p) // len(rows))
+    p.position[order, 0] = np.tile(
+        (np.arange(len(p) // len(rows)) + 0.5) / (len(p) // len(rows)) * CELLS * DX, len(rows)
+    )
+    simulation.operations.sorting.sorts = 0
+    simulation.operations.begin()
+    p.velocity_gradient[:, 0, 1] = 1e-9  # shear that moves nothing
+    stage = simulation.operations.stage
+    stage.shear = stage.time = 1.0
+    stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
+    found = {}
+
+    def probe(ops):
+        cells = ops.cells()
+        found["before"] = cells.at_particles(np.abs(cells.filling() - 1))
+        found["after"] = cells.at_particles(np.abs(cells.filling(p.quadrature) - 1))
+
+    redistribute(simulation, probe)
+    assert found["before"].max() > 0.05
+    assert found["after"].max() < 0.006
+
+
 def test_material_comes_to_fill_the_room_there_is():
     """Particles that lie too close are drawn apart by J, those that lie too far together."""
     simulation = filled("plane-strain", SEAMED)
@@ -193,9 +224,19 @@ def test_material_comes_to_fill_the_room_there_is():
     p.volume *= 1.03  # too much of it
     p.volume_ratio *= 1.03
     stage = simulation.operations.stage
-    stage.shear = stage.time = 0.5
+    stage.shear = stage.elapsed = 0.5
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     np.testing.assert_allclose(p.volume_ratio, 1.03 * np.exp(-2 * 0.5 * np.log(1.03)), rtol=1e-10)
+
+
+def test_only_the_flow_carries_material_out_of_an_open_face():
+    """There a sink takes it, or a guard stops the run; no shift of places may bring that about."""
+    simulation = filled("plane-strain", {"plane-strain": {"z_min": "stick"}})
+    simulation.operations.begin()
+    redistribute(simulation, lambda ops: ops.shift(np.full((len(simulation.particles), 2), 0.6 * DX)))
+    top = simulation.grid.extent
+    assert (simulation.particles.position <= top).all()
+    assert (simulation.particles.position.max(axis=0) == top).all()
 
 
 def test_a_solid_keeps_its_places_and_boxes():
@@ -205,7 +246,7 @@ def test_a_solid_keeps_its_places_and_boxes():
     solid = simulation.particles.groups[1].part
     before = {name: array[solid].copy() for name, array in p.arrays().items()}
     stage = simulation.operations.stage
-    stage.shear = stage.time = 0.3
+    stage.shear = stage.elapsed = 0.3
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     for name in ("position", "box", "volume_ratio", "volume", "quadrature"):
         np.testing.assert_array_equal(getattr(p, name)[solid], before[name], err_msg=name)
@@ -312,9 +353,9 @@ def test_even_works_with_boxes_that_the_weights_do_not_see(shape):
     p = disorder(simulation)
     done = 0
     for _ in range(60):
-        before = simulation.operations.stage.time
+        before = simulation.operations.stage.elapsed
         simulation.advance()
-        done += simulation.operations.stage.time < before
+        done += simulation.operations.stage.elapsed < before
     simulation.check()
     assert done > 0
     np.testing.assert_allclose(p.box, np.sqrt(p.volume)[:, None].repeat(2, axis=1) / 2, rtol=1e-2)

@@ -86,7 +86,7 @@ def redistribute(simulation):
     """One redistribution between two steps; what the energies of the history have changed by, J."""
     simulation.operations.begin()
     stage, before = simulation.operations.stage, total(simulation)
-    stage.shear = stage.time = 0.5
+    stage.shear = stage.elapsed = 0.5
     simulation.particles.velocity_gradient[:, 0, 1] = 1.0
     assert stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     return total(simulation) - before

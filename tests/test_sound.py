@@ -128,7 +128,7 @@ def test_another_sound_speed_is_taken_at_the_same_energy_and_slowly():
     p.volume_ratio[3] = 1.0
     before, stored, ratio = group.sound_speed, group.compressive_energy(p.volume_ratio), p.volume_ratio.copy()
     length = float(np.ptp(p.position[:, 1]))
-    follow_flow(p, simulation.grid, np.zeros(2), [before], elapsed=length / before)
+    follow_flow(p, simulation.grid, np.zeros(2), np.zeros(2), [before], elapsed=length / before)
     assert group.sound_speed == pytest.approx(before * math.exp(CHANGE), rel=1e-9)  # e is larger by U
     np.testing.assert_allclose(group.compressive_energy(p.volume_ratio), stored, rtol=1e-10, atol=1e-12)
     np.testing.assert_array_equal(np.sign(p.volume_ratio - 1), np.sign(ratio - 1))
@@ -167,7 +167,7 @@ def test_a_flow_without_gravity_goes_by_its_speed_and_keeps_a_tenth_of_the_sound
     simulation.particles.velocity[:] = 0.0
     first = [group.sound_speed]
     for _ in range(200):
-        follow_flow(simulation.particles, simulation.grid, np.zeros(2), first, elapsed=0.01)
+        follow_flow(simulation.particles, simulation.grid, *np.zeros((2, 2)), first, elapsed=0.01)
     assert group.sound_speed == pytest.approx(SLOWEST * 2.0 / 0.05)
 
 

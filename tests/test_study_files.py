@@ -1,6 +1,7 @@
 """Study files and ``--vary``: what they may say, and the one sentence for what they may not."""
 
 import json
+import math
 import re
 from contextlib import nullcontext
 from pathlib import Path
@@ -10,7 +11,7 @@ import xarray
 from studies import CASE, Now, one_line, status, study
 
 from mpmkit.errors import CaseError, OutputError
-from mpmkit.study import load_study, members_of
+from mpmkit.study import load_study, members_of, parse_study
 from mpmkit.study.store import Store
 from mpmkit.study.vary import parse_vary
 
@@ -307,3 +308,11 @@ def test_two_studies_into_one_directory(tmp_path):
     with store.claimed(second):
         pass  # it is free again
     assert [path.name for path in (tmp_path / "both").iterdir()] == ["study.json"]
+
+
+def test_a_number_of_a_python_object_that_is_not_finite_is_named():
+    with pytest.raises(CaseError) as refused:
+        parse_study({"name": "tiny", "case": "tiny.json", "vary": {"until": [0.1, math.nan]}})
+    assert str(refused.value) == (
+        "study: vary.until.1: nan is not a number that a case can have; every number must be finite"
+    )

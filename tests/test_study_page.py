@@ -12,9 +12,13 @@ import xarray
 from browser import window
 
 from mpmkit.stability import page as stability_page
+from mpmkit.stability.trial import ROWS as TRIAL_ROWS
+from mpmkit.stability.trial import Trace
+from mpmkit.stability.trials import Trials
 from mpmkit.study import page as study_page
 
 TIME = np.linspace(0, 1, 21)
+STEPS = np.linspace(0, 1, TRIAL_ROWS)
 ORDERS = ["usl", "usf", "musl"]
 ROWS = [
     {
@@ -92,13 +96,39 @@ def test_the_page_of_a_map_has_a_bar_and_a_row_for_each_combination(tmp_path):
     assert widths[1] - widths[0] == pytest.approx(per_decade * math.log10(4), abs=0.2)
 
 
+def trace(of: np.ndarray, rows: int = len(STEPS)) -> Trace:
+    """A trial of one particle at ``of`` (rows,), with the energy of its place; fewer rows if it stopped."""
+    position = of[:rows, None, None] * np.ones((1, 1, 2))
+    one = np.ones(rows)
+    stopped = None if rows == len(STEPS) else "energy"
+    return Trace(STEPS[:rows], of[:rows], one, one[:, None], position, np.ones(1), stopped)
+
+
+def test_the_page_of_a_map_shows_the_trials_at_the_limit(tmp_path):
+    """Energies of all three; the distance of an unstable trial ends where a guard stopped it."""
+    trials = [Trials(trace(0 * STEPS), trace(0.1 * STEPS), trace(STEPS, rows=20)), Trials(None, None, None)]
+    path = stability_page.write_page(ROWS, ["order"], "tank", tmp_path / "map", trials)
+    charts = data_of(path)["trials"]["charts"]
+    assert list(charts) == ["energy-0", "apart-0"]  # usf has no fine solution
+    labels = [curve["label"] for curve in charts["energy-0"]["curves"]]
+    assert labels == ["fine solution", "largest stable step, 0.5", "smallest unstable step, 0.6"]
+    fine, stable, unstable = (curve["values"] for curve in charts["apart-0"]["curves"])
+    assert fine == [0.0] * TRIAL_ROWS
+    assert stable[-1] == pytest.approx(0.1 * math.sqrt(2))
+    assert unstable[19] == pytest.approx(STEPS[19] * math.sqrt(2))
+    assert unstable[20:] == [None] * 20
+
+
 def test_a_browser_shows_both(study, tmp_path):
-    path = stability_page.write_page(ROWS, ["order"], "tank", tmp_path / "map")
+    trials = [Trials(trace(0 * STEPS), trace(0.1 * STEPS), trace(STEPS, rows=20)), Trials(None, None, None)]
+    path = stability_page.write_page(ROWS, ["order"], "tank", tmp_path / "map", trials)
     with window() as browser:
         browser.look(390)
         for page in (study, path):
             browser.open(page)
             assert browser.run("return document.documentElement.scrollWidth") <= 390
+        browser.find("#trials summary").click()
+        browser.until("mpmkit.page.charts.every(({ u }) => u.width > 250)")  # drawn when its place has a size
         browser.open(study)
         browser.run("mpmkit.page.charts[0].moveTo(0)")
         text = " ".join(browser.find("[data-chart=cost] .values").text.split())

@@ -128,7 +128,7 @@ def test_an_interrupted_study_keeps_what_has_finished_and_goes_on_from_there(tmp
     assert process.returncode == 130, said
     assert said.splitlines()[-1] == (
         f"mpmkit: interrupted; the members that had finished are in '{tmp_path / 'out'}', and the same "
-        "command goes on from there"
+        "command continues from there"
     )
     assert "Traceback" not in said
     assert shown == ""

@@ -71,8 +71,8 @@ class Scene:
     def scatter(self, found, momentum, forces):
         scatter.scatter(self.dim, self.support)(
             found, self.strides, self.lower, self.tasks, self.base, self.weight, self.gradient, self.hoop,
-            self.mass, self.velocity, self.affine, self.volume, self.stress, self.pressure, self.gravity,
-            CELL, momentum, forces,
+            self.mass, self.velocity, self.affine, self.volume, self.stress, self.pressure,
+            self.gravity[None], CELL, momentum, forces,
         )  # fmt: skip
 
     def gather(self, grid, dt=0.0, flip=0.0, move=False, strain=False, affine=False):

@@ -94,8 +94,12 @@ def test_an_interrupted_run_ends_where_it_would_have(runs, tmp_path, monkeypatch
             signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr("mpmkit.running.execution.TOLD_EVERY", 0.0)
+    before = signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # ignored where tests run in the background
     with pytest.raises(Interrupted):
         mpmkit.run(slump({"rest": True, "at_most": 10}), tmp_path / "run", listen=listen)
+    signal.signal(signal.SIGINT, before)
     assert summary(tmp_path / "run")["simulated_time"] < 1.7
     resume(tmp_path / "run")
     same(tmp_path / "run", runs / "rest")
@@ -105,7 +109,7 @@ def test_an_interrupted_run_ends_where_it_would_have(runs, tmp_path, monkeypatch
 def scripted(spread, speed, height=0.3, walls=()):
     """A stand-in for a simulation, whose spread and RMS speed follow functions of time; 1 m/s at first."""
     case = parse_case(CAKE | {"until": {"rest": True, "at_most": 100}})
-    scene = SimpleNamespace(time=0.0, steps=0, case=case.model_copy())
+    scene = SimpleNamespace(time=0.0, steps=0, case=case.model_copy(), settled=True)
     scene.case.__dict__["height"] = height
     scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)), position=np.zeros((3, 2)))
     scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: 0.02)

@@ -18,6 +18,7 @@ SECTIONS = {
     4: "Limits and thresholds",
     5: "The method itself",
     6: "Faces of the domain",
+    7: "In and out",
     8: "Tests of the laboratory",
     0: "Everything else",
 }

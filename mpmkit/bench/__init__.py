@@ -1,4 +1,4 @@
-"""How fast this machine is: the standard scenes, in mid-flow, timed as a whole and operation by operation."""
+"""The speed of this machine: standard scenes in mid-flow, timed as a whole and for each operation."""
 
 from .scenes import SCENES, BenchScene
 from .timing import Timing, time_scene

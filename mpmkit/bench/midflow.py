@@ -1,4 +1,4 @@
-"""A state in mid-flow, cheaply: a coarse run, with each of its particles then cut into many."""
+"""A state in mid-flow at low cost: a coarse run, whose particles are then divided."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .scenes import ACCURATE, EXACT, FLOWING, BenchScene
 
 
 def in_mid_flow(scene: BenchScene) -> Simulation:
-    """The scene some tenths of a second after its release, as a real run has it: no lattice of particles.
+    """The scene some tenths of a second after its release, when particles lie irregularly, as in a real run.
 
-    A run on cells ``coarser`` times as large, with the accurate set-up, gives the flow. Its particles' boxes
-    are cut to the size of the scene's.
+    A run on cells ``coarser`` times as large, with the accurate scheme, gives the flow. The boxes of its
+    particles are divided into boxes of the size in the scene.
     """
     case = parse_case(scene.case)
     flowing = Simulation(parse_case(_coarse(scene)))
@@ -36,14 +36,14 @@ def _coarse(scene: BenchScene) -> dict[str, Any]:
 
 
 def _cut(case: Case, coarse: Particles, times: int) -> Particles:
-    """Every particle cut into ``times`` pieces along each axis, with its affine velocity field."""
+    """Every particle divided into ``times`` parts along each axis, with its affine velocity field."""
     fine = Simulation(case).particles
     dim = coarse.dim
     steps = (2 * np.arange(times) + 1) / times - 1
     corners = np.stack(np.meshgrid(*[steps] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
     parent = np.repeat(np.arange(len(coarse)), len(corners))
     offset = np.tile(corners, (len(coarse), 1)) * coarse.box[parent]
-    # The fine particles' group, law and optional arrays; as many of them as there are pieces.
+    # Group, law and optional arrays of the fine particles, one entry for each part.
     fine.take(np.zeros(len(parent), dtype=np.int64))
     group = fine.groups[0]
     group.part = slice(0, len(parent))
@@ -56,7 +56,7 @@ def _cut(case: Case, coarse: Particles, times: int) -> Particles:
     fine.box = coarse.box[parent] / times
     fine.volume_ratio = coarse.volume_ratio[parent]
     fine.initial_volume = coarse.initial_volume[parent] / len(corners)
-    if case.space_.radial:  # equal boxes of a ring differ in volume as their radii
+    if case.space_.radial:  # equal boxes differ in volume as their radii do
         fine.initial_volume *= fine.position[:, 0] / coarse.position[parent, 0]
     fine.volume = fine.initial_volume * fine.volume_ratio
     fine.mass = group.density * fine.initial_volume

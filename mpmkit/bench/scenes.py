@@ -1,4 +1,4 @@
-"""The standard scenes: slumps of the seed's concrete, caught in mid-flow."""
+"""The standard scenes: slump tests of the concrete of Ferreira et al., in mid-flow."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ SEED = {
     "time_step": {"fraction": 0.25, "ignore": ["viscous"]},
 }
 FLOWING = 0.3
-"""Seconds after the release, when the slump flows fastest outwards and half of its spread is reached."""
+"""s after the release: the material flows outwards fastest, and half of the final spread is reached."""
 
 
 @dataclass(frozen=True)
 class BenchScene:
-    """A case, and how many times coarser the run is that brings it to mid-flow."""
+    """A case, and how many times coarser the cells of the run are that gives its state in mid-flow."""
 
     name: str
     description: str
@@ -86,7 +86,7 @@ SCENES = {
         ),
         BenchScene(
             "small-axisymmetric",
-            "the same at 10 mm, where what is outside the kernels counts",
+            "the same at 10 mm, where the time outside the kernels matters",
             _slump("small-axisymmetric", "axisymmetric", 0.01, EXACT, ACCURATE),
             coarser=1,
         ),

@@ -1,4 +1,4 @@
-"""Particle-steps a second, and where they go."""
+"""Particle-steps per second, and the time of each operation."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ KERNELS = {
     "volumes": ("_update_volumes", "_follow_domains", "_treated", "_pressure", "relax_volume"),
     "law": ("_update_law",),
 }
-"""What a step consists of, and the operations that do it; the rest is outside the kernels."""
+"""The parts of a step, and the methods that do them; the rest of a step is outside the kernels."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Speed of a scene. ``kernels`` is nanoseconds a particle-step by operation; their sum is the step."""
+    """Speed of a scene. ``kernels`` has the nanoseconds per particle-step of each part of a step."""
 
     scene: str
     particles: int
@@ -43,18 +43,18 @@ class Timing:
 
 
 def time_scene(scene: BenchScene, threads: int | None = None, seconds: float = 5.0) -> Timing:
-    """Time full steps of a scene in mid-flow, with everything a real run does.
+    """Time full steps of a scene in mid-flow, with all operations of a real run.
 
     Args:
         scene: one of ``SCENES``.
-        threads: threads to use; default: as many as pay off.
-        seconds: for how long.
+        threads: threads to use; default: as many as are useful.
+        seconds: duration of the measurement, s.
     """
     return timed(in_mid_flow(scene), scene.name, threads, seconds)
 
 
 def timed(simulation: Simulation, name: str, threads: int | None, seconds: float) -> Timing:
-    """As ``time_scene``, of a scene that is already set up; it moves on."""
+    """As ``time_scene``, for a simulation that exists; it advances."""
     with using_threads(threads, len(simulation.particles)) as used:
         return _timed(simulation, name, used, seconds)
 
@@ -79,7 +79,7 @@ def _timed(simulation: Simulation, name: str, threads: int, seconds: float) -> T
 
 
 class Stopwatch:
-    """Adds up the time in each operation of a scene, less that in the operations that it calls."""
+    """Adds up the time in each operation of a scene, without the time in the operations that it calls."""
 
     def __init__(self, *owners: Any) -> None:
         self.spent: dict[str, float] = defaultdict(float)

@@ -44,12 +44,13 @@ def _few_particles(case: Case) -> Iterator[str]:
     """3-D fluids with too few particles per cell to keep their yield stress when particles are disordered."""
     if case.space_.dim < 3 or not case.scheme.redistribution.equal_boxes:
         return
-    for number, body in enumerate(case.bodies):
+    for where, body in zip(case.materials, case.filled, strict=True):
         count = math.prod(body.particles_along_axes(case.space_.dim))
         if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
             yield (
-                f"bodies.{number} has {count} particles a cell: in three dimensions a fluid that is sheared "
-                f"far flows too easily with fewer than {ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
+                f"{where.removesuffix('.material')} has {count} particles a cell: in three dimensions a "
+                "fluid that is sheared far flows too easily with fewer than "
+                f"{ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
                 "with 8, 0.6 % with 27); see particles_per_cell"
             )
 
@@ -59,7 +60,7 @@ def _needless(case: Case) -> Iterator[str]:
     scheme = case.scheme
     if not scheme.redistribution.equal_boxes:
         return
-    fluids = [body for body in case.bodies if body.material.constitutive_law.uses_equation_of_state]
+    fluids = [one for one in case.filled if one.material.constitutive_law.uses_equation_of_state]
     kept = f"scheme.redistribution '{scheme.redistribution.name}' keeps boxes of fluids of equal sides"
     if scheme.splitting and fluids:
         name = scheme.refinement.name
@@ -73,7 +74,7 @@ def _needless(case: Case) -> Iterator[str]:
 
 def _falls_out(case: Case) -> Iterator[str]:
     """Bodies without support that gravity moves to an open face before the end."""
-    g = case.gravity_vector
+    g = case.gravity_at_start
     if not g.any():
         return
     axis = int(np.argmax(np.abs(g)))
@@ -115,7 +116,7 @@ def _is_a_sink(case: Case, axis: int, upper: bool) -> bool:
 
 def _hangs(case: Case) -> Iterator[str]:
     """Bodies that gravity or their own motion would move away from a symmetry face, which holds them."""
-    g = case.gravity_vector
+    g = case.gravity_at_start
     for axis in range(case.space_.dim):
         for upwards in (False, True):
             side = _side(case, axis, upwards)
@@ -140,7 +141,11 @@ def _swings_off(case: Case) -> Iterator[str]:
     """Bodies that a standing wave moves away from a slip wall, which does not pull, without weight on it."""
     for number, body in enumerate(case.bodies):
         fluid = body.material.constitutive_law.uses_equation_of_state
-        if body.velocity is None or isinstance(body.velocity, list) or (fluid and case.gravity_vector.any()):
+        if (
+            body.velocity is None
+            or isinstance(body.velocity, list)
+            or (fluid and case.gravity_at_start.any())
+        ):
             continue
         for axis in (axis for axis, size in enumerate(body.velocity.amplitude) if size):
             for upwards in (False, True):
@@ -192,13 +197,13 @@ def _touching(case: Case) -> Iterator[str]:
 def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
-        return bool(case.gravity_vector.any()) or a.velocity is not None or b.velocity is not None
+        return bool(case.gravity_at_start.any()) or a.velocity is not None or b.velocity is not None
     relative = (_velocity(case, b) - _velocity(case, a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
-    if not case.gravity_vector.any():
+    if not case.gravity_at_start.any():
         return False
-    axis = int(np.argmax(np.abs(case.gravity_vector)))
+    axis = int(np.argmax(np.abs(case.gravity_at_start)))
     return _is_below(case, a, b, axis) or _is_below(case, b, a, axis)
 
 
@@ -217,7 +222,7 @@ def _is_below(case: Case, lower: Body, upper: Body, axis: int) -> bool:
     others = [a for a in range(case.space_.dim) if a != axis]
     over = all(low_a[a] < high_b[a] and low_b[a] < high_a[a] for a in others)
     tolerance = 1e-6 * case.grid.cell_size
-    if case.gravity_vector[axis] < 0:
+    if case.gravity_at_start[axis] < 0:
         return bool(over and low_b[axis] >= high_a[axis] - tolerance)
     return bool(over and high_b[axis] <= low_a[axis] + tolerance)
 
@@ -239,7 +244,7 @@ def _has_a_wall_below(case: Case, body: Body, axis: int) -> bool:
     if not case.walls:
         return False
     (lower, upper), (least, most) = _bounds(case, body), case.domain_bounds
-    if case.gravity_vector[axis] < 0:
+    if case.gravity_at_start[axis] < 0:
         lower[axis], upper[axis] = least[axis], lower[axis]
     else:
         lower[axis], upper[axis] = upper[axis], most[axis]

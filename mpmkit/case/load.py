@@ -6,9 +6,9 @@ import json
 import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from ..errors import CaseError
 from ..geometry import FILES
@@ -26,6 +26,7 @@ from .strict_json import NESTED, decode, require_finite
 
 LARGEST = 100_000_000
 """Most characters of a file that are read: a device such as /dev/zero has no end."""
+M = TypeVar("M", bound=BaseModel)
 
 
 def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registry | None = None) -> Case:
@@ -69,6 +70,32 @@ def parse_case(
     except RecursionError:
         raise CaseError(f"{source}: {NESTED}") from None
     except (TypeError, ValueError) as error:  # of json.dumps, for Python objects that JSON cannot represent
+        raise CaseError(f"{source}: {error}") from None
+
+
+def validated(model: type[M], data: Any, source: str, what: str) -> M:
+    """The content of a JSON file as a model other than a case, such as a study.
+
+    Args:
+        model: the class.
+        data: the content.
+        source: its name in messages.
+        what: the kind of file in messages, such as "study".
+
+    Raises:
+        CaseError: it is not valid.
+    """
+    if not isinstance(data, dict):
+        raise CaseError(f"{source}: a {what} must be a JSON object")
+    data = {key: value for key, value in data.items() if key != "$schema"}
+    try:
+        require_finite(data)  # for Python objects; numbers of a file are already checked
+        return model.model_validate_json(json.dumps(data, allow_nan=False))
+    except ValidationError as error:
+        raise CaseError(f"{source}: {explain(error, data, model, installed(), what)}") from None
+    except RecursionError:
+        raise CaseError(f"{source}: {NESTED}") from None
+    except (TypeError, ValueError) as error:
         raise CaseError(f"{source}: {error}") from None
 
 

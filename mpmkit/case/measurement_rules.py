@@ -19,39 +19,57 @@ def check_measurements(case: Case) -> None:
 
     Every formula is evaluated once with test numbers instead of a scene.
     """
-    axes = case.space_.axes
-    walls = {*case.walls, *(name for name, kind in case.grid.faces.items() if _is_wall(kind))}
-
-    def depth(x: float = math.nan, *more: float) -> float:
-        low, high = case.grid.domain[axes[0]]
-        if more or not low <= x <= high:
-            raise ValueError(f"depth takes one place along {axes[0]}, from {low:g} to {high:g} m")
-        return 1.0
-
-    def front(*given: float) -> float:
-        if given:
-            raise ValueError("front takes nothing: write front()")
-        return 1.0
-
-    def force(wall: str = "", axis: str = "", *more: str) -> float:
-        if more or wall not in walls or axis not in axes:
-            raise ValueError(
-                f"force takes the name of a wall ({_listed(walls)}) and an axis ({_listed(axes)}), in quotes"
-            )
-        return 1.0
-
-    def torque(wall: str = "", *more: str) -> float:
-        if more or wall not in walls or len(axes) != 2 or case.space_.radial:
-            raise ValueError(f"torque takes the name of a wall ({_listed(walls)}) in a plane strain scene")
-        return 1.0
-
     for name in case.measurements:
         if not NAME.fullmatch(name) or name in {*NAMES, *TAKEN, *FUNCTIONS, *UNITS}:
             raise ValueError(
                 f"{SELF} has one called '{name}'; a name must be of small letters, digits and '_', first a "
                 "letter, and not that of a variable, a figure or a function that there is"
             )
-    measured(case.measurements, _Numbers(), functions(depth, front, force, torque))
+    measured(case.measurements, _Numbers(), functions(_Asked(case)))
+
+
+class _Asked:
+    """The functions that look at a scene, as they check what they are given; each returns 1."""
+
+    def __init__(self, case: Case) -> None:
+        self._case, self._axes = case, case.space_.axes
+        faces = [name for name, kind in case.grid.faces.items() if _is_wall(kind)]
+        self._walls = {*case.walls, *faces}
+
+    def depth(self, *place: float) -> float:
+        axes = self._axes[:-1]
+        domain = [self._case.grid.domain[axis] for axis in axes]
+        inside = all(low <= x <= high for x, (low, high) in zip(place, domain, strict=False))
+        if not 1 <= len(place) <= len(axes) or not inside:
+            (low, high), *across = domain
+            also = "".join(f" and, if you like, one along y, from {a:g} to {b:g} m" for a, b in across)
+            raise ValueError(f"depth takes one place along {axes[0]}, from {low:g} to {high:g} m{also}")
+        return 1.0
+
+    def front(self, *given: float) -> float:
+        if given:
+            raise ValueError("front takes nothing: write front()")
+        return 1.0
+
+    def force(self, wall: str = "", axis: str = "", *more: str) -> float:
+        if more or wall not in self._walls or axis not in self._axes:
+            raise ValueError(
+                f"force takes the name of a wall ({_listed(self._walls)}) and an axis "
+                f"({_listed(self._axes)}), in quotes"
+            )
+        return 1.0
+
+    def torque(self, wall: str = "", *more: str) -> float:
+        if more or wall not in self._walls or len(self._axes) != 2 or self._case.space_.radial:
+            raise ValueError(
+                f"torque takes the name of a wall ({_listed(self._walls)}) in a plane strain scene"
+            )
+        return 1.0
+
+    def outflow(self, sink: str = "", *more: str) -> float:
+        if more or sink not in self._case.sinks:
+            raise ValueError(f"outflow takes the name of a sink ({_listed(self._case.sinks)}), in quotes")
+        return 1.0
 
 
 class _Numbers(dict[str, float]):

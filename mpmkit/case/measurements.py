@@ -48,6 +48,10 @@ TAKEN = (
     "wall_force",
     "wall_torque",
     "wall_power",
+    "mass_out",
+    "sink_mass",
+    "sink_rate",
+    "sink",
     "wall",
     "component",
     "about",
@@ -65,7 +69,7 @@ class Measurement(Model):
 
     formula: str = Field(
         description="arithmetic over variables of the history, measurements above it, and depth(x), front(), "
-        "force('wall', 'z'), torque('wall')"
+        "force('wall', 'z'), torque('wall'), outflow('sink')"
     )
     unit: str = Field(description="its unit; 1 for a plain number")
     description: str = Field(description="what it is; the label of its plots")
@@ -74,9 +78,13 @@ class Measurement(Model):
 Functions = Mapping[str, Callable[..., float]]
 
 
-def functions(depth: Callable, front: Callable, force: Callable, torque: Callable) -> Functions:
-    """The functions of measurements, with those of arithmetic."""
-    return FUNCTIONS | {"depth": depth, "front": front, "force": force, "torque": torque}
+LOOKS = ("depth", "front", "force", "torque", "outflow")
+"""Functions that look at the scene."""
+
+
+def functions(looks: object) -> Functions:
+    """The functions of measurements: those of arithmetic, and ``LOOKS``, which are methods of ``looks``."""
+    return FUNCTIONS | {name: getattr(looks, name) for name in LOOKS}
 
 
 def measured(

@@ -11,7 +11,7 @@ from .output import FRAMES, ROWS
 def resolved(case: Case) -> dict[str, Any]:
     """The case with everything filled in that it leaves to a default."""
     data = case.model_dump(mode="json")
-    data["gravity"] = case.gravity_vector.tolist()
+    data["gravity"] = case.gravity_of_key.tolist()
     data["output"]["history_interval"] = case.output.history_interval or case.end / ROWS
     data["output"]["frame_interval"] = case.output.frame_interval or case.end / FRAMES
     for wall in data["walls"].values():
@@ -19,7 +19,10 @@ def resolved(case: Case) -> dict[str, Any]:
     for body, entry in zip(case.bodies, data["bodies"], strict=True):
         entry["particles_per_cell"] = list(body.particles_along_axes(case.space_.dim))
         _fill_base(entry["shape"], case)
-        entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
+        if "velocity" not in body.initial:
+            entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
+    for inflow, entry in zip(case.sources.values(), data["sources"].values(), strict=True):
+        entry["particles_per_cell"] = list(inflow.particles_along_axes(case.space_.dim))
     return data
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 
 from . import options
@@ -12,13 +13,13 @@ from .printing import echo, echo_json
 DAY = 86400.0
 """s"""
 LONGEST = 100
-"""Characters of what is said of a case."""
+"""Most characters of the description of a case."""
 
 
 @with_examples("cases", "mpmkit cases", "mpmkit cases --json > cases.json")
 @options.as_json
 def command(as_json: bool) -> None:
-    """List the cases that ship, and how long each takes on this machine, give or take a factor of two."""
+    """List the shipped cases, and how long each takes on this machine, to within a factor of two."""
     from ..case.load import read_json
     from ..case.shipped import LABORATORY, shipped
     from ..plan.shipped_times import shipped_seconds
@@ -48,6 +49,9 @@ def command(as_json: bool) -> None:
                 echo(f"{row['name']:<{width}}  {columns}  {_first_sentence(row['description'])}")
         echo("")
     echo(
+        "time and fine are the expected minutes:seconds on this machine, of the case and of its fine variant"
+    )
+    echo(
         "mpmkit init NAME writes one to a file of your own, with --fine its fine variant; "
         "mpmkit run FILE runs it"
     )
@@ -60,4 +64,5 @@ def _time(seconds: float | None) -> str:
 
 
 def _first_sentence(text: str) -> str:
-    return textwrap.shorten(text.partition(". ")[0].rstrip("."), LONGEST, placeholder=" …")
+    first = re.split(r"(?<!\bal)\. ", text, maxsplit=1)[0]  # "et al. " does not end a sentence
+    return textwrap.shorten(first.rstrip("."), LONGEST, placeholder=" …")

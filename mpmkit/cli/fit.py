@@ -69,8 +69,8 @@ def command(
             )
         except KeyboardInterrupt:
             raise Interrupted(
-                f"interrupted; the runs that had finished are in '{directory}', and the same command goes "
-                "on from there"
+                f"interrupted; the runs that had finished are in '{directory}', and the same command "
+                "continues from there"
             ) from None
     if quiet:
         return

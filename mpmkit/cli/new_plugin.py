@@ -21,7 +21,10 @@ KINDS = [
     "equation_of_state",
     "surface",
     "contact",
+    "body_force",
+    "initial_field",
     "sink",
+    "source",
     "diagnostic",
     "particle_field",
 ]

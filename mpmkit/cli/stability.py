@@ -59,6 +59,8 @@ def command(
     from ..stability import combinations, critical_fraction
     from ..stability.figure import draw, picture_in
     from ..stability.page import write_page
+    from ..stability.trial import Trace
+    from ..stability.trials import Trials
     from .display import say
 
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
@@ -68,9 +70,12 @@ def command(
     if isinstance(data.get("until"), dict):
         say("until has conditions: every combination is tried to until.at_most")
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
-    rows = []
+    rows: list[dict] = []
+    trials: list[Trials] = []
     for labels, combination in list(combinations(data, chosen)):
-        found = critical_fraction(combination)
+        kept: dict[float, Trace] = {}
+        found = critical_fraction(combination, keep=kept.__setitem__)
+        trials.append(Trials.of(found, kept))
         rows.append(labels | asdict(found))
         if not as_json:
             say(f"{', '.join(labels.values()) or data['name']}: {_stable(rows[-1])}")
@@ -80,7 +85,7 @@ def command(
     else:
         echo(_table(list(chosen), rows))
     path = draw(rows, list(chosen), str(data["name"]), directory)
-    page = write_page(rows, list(chosen), str(data["name"]), directory)
+    page = write_page(rows, list(chosen), str(data["name"]), directory, trials)
     if not as_json:
         echo(f"map in {path} and {page}")
 

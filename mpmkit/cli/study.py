@@ -35,10 +35,10 @@ def command(
     scheduler: str | None,
     quiet: bool,
 ) -> None:
-    """Run the variations that STUDY describes, and gather them in one dataset, figures and a table.
+    """Run the variations that STUDY describes, and write one dataset, figures, a table and a page.
 
     Members that have run already, of the same case and with the same versions, are not run again.
-    The exit status is 1 where members failed or were not run.
+    The exit status is 1 if members failed or were not run.
     """
     from ..study import load_study
 
@@ -54,7 +54,7 @@ def run_study(
     scheduler: str | None,
     quiet: bool,
 ) -> None:
-    """Run a study into its directory and say what came of it.
+    """Run a study in its directory and print its results.
 
     Raises:
         Unfinished: members failed, or were not run.
@@ -65,13 +65,14 @@ def run_study(
     from ..running.interrupts import take_signals_as_interrupts
     from ..study import collect, execute, members_of
     from ..study.execute import Unfinished, named
+    from ..study.page import NAME
     from ..study.processes import cores
     from ..study.store import Store
 
     members = members_of(study)
     store = Store(Path(out) if out is not None else Path("runs") / study.name, overwrite)
     take_signals_as_interrupts()
-    # The cluster first of all: where there is none, nothing is written.
+    # The cluster first: if there is none, nothing is written.
     with _cluster(scheduler) as executor, store.claimed(study, members):
         at_once = workers or max(1, cores() // (threads or study.threads))
         progress = None if quiet else _progress(study, members, store, at_once, threads or study.threads)
@@ -84,11 +85,12 @@ def run_study(
                     executor=executor,
                     workers=workers,
                     listen=progress,
+                    page=NAME if study.pages else None,
                 )
             except KeyboardInterrupt:
                 raise Interrupted(
                     f"interrupted; the members that had finished are in '{store.path}', and the same command "
-                    "goes on from there"
+                    "continues from there"
                 ) from None
             finally:
                 store.write(collect(study, members, store))

@@ -2,6 +2,7 @@
 
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
+from .body_force import BodyForce
 from .contact import Contact, ContactNodes
 from .diagnostic import Column, Diagnostic, Observed, ParticleField
 from .elastoviscoplastic import ElastoviscoplasticLaw
@@ -9,13 +10,16 @@ from .elastoviscoplastic_with_state import ElastoviscoplasticLawWithState
 from .equation_of_state import EquationOfState
 from .generalised_newtonian import REST_SHEAR_RATE, GeneralisedNewtonianLaw
 from .hooks import KINDS, hookimpl
+from .initial_field import Beginning, InitialField
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .rate import Rate, RateTable
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -26,6 +30,8 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "Beginning",
+    "BodyForce",
     "Cells",
     "Column",
     "ConstitutiveLaw",
@@ -36,19 +42,24 @@ __all__ = [
     "ElastoviscoplasticLawWithState",
     "EquationOfState",
     "GeneralisedNewtonianLaw",
+    "InitialField",
     "Kinematics",
     "Lattice",
+    "Mouth",
     "Observed",
     "Operations",
     "ParticleField",
     "PlacedSurface",
     "Plugin",
+    "Rate",
+    "RateTable",
     "Redistributing",
     "Redistribution",
     "Refinement",
     "Refining",
     "ShapeFunction",
     "Sink",
+    "Source",
     "Space",
     "StateVariable",
     "Surface",

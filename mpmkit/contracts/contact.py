@@ -41,6 +41,8 @@ class ContactNodes:
     nodes; it is below 0 where they take from it. A drag may count on the sum, where that is above 0."""
     memory: dict[str, np.ndarray] = field(default_factory=dict)
     """``(k,)`` each: the variables that the contact declares, kept for each node from step to step."""
+    time: float = 0.0
+    """Time at the start of the step, s."""
 
     def slip(self) -> tuple[np.ndarray, np.ndarray]:
         """u_n = (v - w)·n, m/s, ``(k,)``, and u_t = v - w - u_n n, m/s, ``(k, dim)``: material leaves where

@@ -11,15 +11,18 @@ from collections.abc import Iterable
 import pluggy
 
 from .base import Plugin
+from .body_force import BodyForce
 from .contact import Contact
 from .diagnostic import Diagnostic, ParticleField
 from .equation_of_state import EquationOfState
+from .initial_field import InitialField
 from .law import ConstitutiveLaw
 from .order import UpdateOrder
 from .redistribution import Redistribution
 from .refinement import Refinement
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Source
 from .surface import Surface
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -90,8 +93,23 @@ def mpmkit_particle_fields() -> Iterable[type[ParticleField]]:  # type: ignore[e
 
 
 @hookspec
+def mpmkit_body_forces() -> Iterable[type[BodyForce]]:  # type: ignore[empty-body]
+    """Body forces of this module."""
+
+
+@hookspec
+def mpmkit_initial_fields() -> Iterable[type[InitialField]]:  # type: ignore[empty-body]
+    """Initial fields of this module."""
+
+
+@hookspec
 def mpmkit_sinks() -> Iterable[type[Sink]]:  # type: ignore[empty-body]
     """Sinks of this module."""
+
+
+@hookspec
+def mpmkit_sources() -> Iterable[type[Source]]:  # type: ignore[empty-body]
+    """Sources of this module."""
 
 
 KINDS: dict[str, tuple[str, type[Plugin]]] = {
@@ -105,7 +123,10 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
+    "body_force": ("mpmkit_body_forces", BodyForce),
+    "initial_field": ("mpmkit_initial_fields", InitialField),
     "sink": ("mpmkit_sinks", Sink),
+    "source": ("mpmkit_sources", Source),
     "diagnostic": ("mpmkit_diagnostics", Diagnostic),
     "particle_field": ("mpmkit_particle_fields", ParticleField),
 }

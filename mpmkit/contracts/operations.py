@@ -19,16 +19,21 @@ class Operations(Protocol):
 
     cell_size: float
     """m, side of a cell."""
+
+    @property
+    def time(self) -> float:
+        """Time at the start of the step, s."""
+
     acoustic_time: float
     """s, a cell over the fastest wave: how long a sound takes to be seen by the next node."""
     mean_speed: float
     """m/s, root mean square of the particles' velocity, weighted with mass, a few steps ago at most."""
 
     def map_to_grid(self, *, forces: bool = True) -> None:
-        """Particles to nodes: mass, momentum and, if asked, gravity and the internal force."""
+        """Particles to nodes: mass, momentum and, if asked, the body forces and the internal force."""
 
     def map_forces(self) -> None:
-        """Particles to nodes: gravity and the internal force of the present stress alone.
+        """Particles to nodes: the body forces and the internal force of the present stress alone.
 
         Adds to what is there: once a step, after ``map_to_grid(forces=False)``.
         """

@@ -41,8 +41,8 @@ class Lattice(Protocol):
 class Cells(Protocol):
     """The cells of the grid, and the part of each particle's box in them."""
 
-    def filling(self) -> np.ndarray:
-        """Q_c = Σ size_p part_pc / size of the cell, ``(cells,)``."""
+    def filling(self, weights: np.ndarray | None = None) -> np.ndarray:
+        """Q_c = Σ w_p size_p part_pc / size of the cell, ``(cells,)``; default of w_p: 1."""
 
     def least_beside(self, filling: np.ndarray) -> np.ndarray:
         """The least of a cell and those that share a face with it."""
@@ -58,6 +58,10 @@ class Redistributing(Protocol):
     """The nodes of the grid."""
     places: Lattice
     """A lattice as fine as the particles are apart."""
+
+    @property
+    def time(self) -> float:
+        """Time at the start of the step, s."""
 
     def cells(self) -> Cells:
         """The cells of the grid, with the boxes as they are now."""

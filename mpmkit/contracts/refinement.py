@@ -17,6 +17,10 @@ class Refining(Protocol):
 
     dim: int
 
+    @property
+    def time(self) -> float:
+        """Time of the scene, s."""
+
     def sides(self) -> np.ndarray:
         """Sides of the boxes along each axis, in cells, ``(n, dim)``."""
 

@@ -17,6 +17,8 @@ from ..study.store import Store
 from .model import Fit
 from .result import FitResult
 
+PAGE = "fit.html"
+
 
 class FitDirectory:
     """``asked.json``, ``fit.json``, ``runs.nc``, ``fit.html``, figures, and ``members/`` with every run.
@@ -68,5 +70,5 @@ class FitDirectory:
         from .page import write_page
 
         write_dataset(result.dataset, self.path / "runs.nc")
-        write_page(result, draw(result, self.path), self.path / "fit.html")
+        write_page(result, draw(result, self.path), self.path / PAGE)
         write_json(self.path / "fit.json", result.as_json())

@@ -36,7 +36,7 @@ class Further:
 
 
 def further(solution: Solution) -> list[Further]:
-    """Measurements sorted by how much they would tell about the most uncertain parameter, the best first.
+    """Measurements sorted by how much they would reduce the largest uncertainty, the best first.
 
     A measurement with the slope g and the uncertainty s changes the covariance P of the parameters to
     P − P g gᵀ P/(s² + gᵀ P g).
@@ -78,12 +78,12 @@ def further(solution: Solution) -> list[Further]:
 def sentence(found: list[Further], names: Names) -> str:
     """A sentence about the best of them."""
     if not found or found[0].left > WORTH:
-        return "No other quantity that these runs record would tell much more; another kind of test would."
+        return "No other quantity of these tests would reduce the uncertainty much; another kind of test may."
     best = found[0]
     return (
-        f"The most useful further measurement is the {best.words} in test '{best.test}': known to "
-        f"{100 * best.uncertainty:g} %, it would leave {100 * best.left:.0f} % of the uncertainty of the "
-        f"{names.name(best.parameter)}."
+        f"The most useful further measurement is the {best.words} in test '{best.test}': measured to "
+        f"{100 * best.uncertainty:g} %, it would reduce the uncertainty of the {names.name(best.parameter)} "
+        f"to {100 * best.left:.0f} %."
     )
 
 

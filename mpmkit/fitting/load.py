@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from ..case.load import count_from, name_from, read_json
-from ..case.messages import explain
-from ..errors import CaseError
-from ..registry import installed
+from ..case.load import count_from, name_from, read_json, validated
 from .model import Fit
 
 
@@ -30,15 +24,7 @@ def load_fit(path: str | Path) -> Fit:
 
 def parse_fit(data: Any, source: str = "fit") -> Fit:
     """Validate a fit given as the content of a JSON file; see ``load_fit``."""
-    if not isinstance(data, dict):
-        raise CaseError(f"{source}: a fit must be a JSON object")
-    data = {key: value for key, value in data.items() if key != "$schema"}
-    try:
-        return Fit.model_validate_json(json.dumps(data, allow_nan=False))
-    except ValidationError as error:
-        raise CaseError(f"{source}: {explain(error, data, Fit, installed(), 'fit')}") from None
-    except (TypeError, ValueError, RecursionError) as error:
-        raise CaseError(f"{source}: {error}") from None
+    return validated(Fit, data, source, "fit")
 
 
 def _count_from(folder: Path, data: dict[str, Any]) -> None:

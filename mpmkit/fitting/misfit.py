@@ -1,5 +1,5 @@
-"""The misfit over its uncertainty, of measurements with independent errors and a model with correlated "
-"ones."""
+"""The misfit over its uncertainty, of measurements with independent errors and a model with correlated
+ones."""
 
 from __future__ import annotations
 

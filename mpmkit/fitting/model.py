@@ -173,3 +173,4 @@ class Fit(Model):
     level: float = Field(default=0.9, gt=0, lt=1, description="confidence level of the intervals")
     budget: Budget = Budget()
     threads: int = Field(default=1, ge=1, description="threads of each run")
+    pages: bool = Field(default=True, description="whether each run keeps a page, of at most 1 MB")

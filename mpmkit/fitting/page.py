@@ -1,60 +1,148 @@
-"""The page of a fit: the parameters, their limits of knowledge, and the figures."""
+"""The page of a fit: the parameters, their limits of knowledge, the figures, and all runs."""
 
 from __future__ import annotations
 
+import base64
+import math
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
 
 from ..output.atomic import replacing
+from ..report.page.assembled import assembled
+from ..report.page.section import Section, bullets, note, paragraph, table
+from ..version import __version__
 from .result import FitResult, Found, found_in
+from .runs import Point
+from .solve import Solution
 
-STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 52rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; margin: 1rem 0; }
-th, td { text-align: left; padding: .3rem .9rem .3rem 0; border-bottom: 1px solid #ddd; }
-td.number { font-variant-numeric: tabular-nums; }
-img { max-width: 100%; }
-li { margin: .3rem 0; }
-"""
+CAPTIONS = {
+    "fitted": "Measured and fitted values",
+    "misfit": "Misfit against the parameters, with the region that fits",
+    "flow_curve": "Flow curve with its band",
+}
+"""What the pictures show, by the names of their files."""
 
 
 def write_page(result: FitResult, pictures: list[Path], path: Path) -> None:
-    """Write the page; its pictures are files in the same folder."""
-    parts = [
-        f"<h1>{escape(result.fit.name)}</h1>",
-        f"<p>{escape(result.fit.description)}</p>" if result.fit.description else "",
-        _table(result.parameters.values()),
-        _list("Remarks", result.sentences),
-    ]
-    for one in result.evidence:
-        parts.append(
-            f"<h2>{escape(one.law)}</h2><p>AICc {one.aicc:.4g}, {one.difference:.3g} from the best.</p>"
-        )
-        parts.append(_table(found_in(result.solutions[one.law], result.fit.level).values()))
-    parts += [f'<p><img src="{picture.name}" alt="{picture.stem}"></p>' for picture in pictures]
-    parts.append(f"<p>{result.runs} runs; runs.nc contains all of them.</p>")
-    text = (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(result.fit.name)}</title>'
-        f"<style>{STYLE}</style></head><body>{''.join(parts)}</body></html>\n"
+    """Write the page, which contains its pictures.
+
+    Raises:
+        OutputError: where it cannot be written.
+    """
+    sections = [_parameters(result), _laws(result), _figures(pictures), _runs(result, path.parent)]
+    text = assembled(
+        result.fit.name,
+        result.fit.description,
+        [section for section in sections if section is not None],
+        f"Made by mpmkit {__version__}. It needs no network.",
     )
     with replacing(path) as partial:
         partial.write_text(text, encoding="utf-8")
 
 
-def _table(parameters) -> str:
-    rows = "".join(_row(found) for found in parameters)
-    return (
-        "<table><tr><th>parameter</th><th>value</th><th>from</th><th>to</th><th>unit</th><th>known</th></tr>"
-        f"{rows}</table>"
+def _parameters(result: FitResult) -> Section:
+    body = _table(result.parameters.values(), "Parameters") + bullets(result.sentences)
+    return Section("parameters", "Results", body)
+
+
+def _laws(result: FitResult) -> Section | None:
+    """The parameters of each law, if several were fitted."""
+    if not result.evidence:
+        return None
+    body = ""
+    for one in result.evidence:
+        body += f"<h3>{escape(one.law)}</h3>" + paragraph(
+            f"AICc {one.aicc:.4g}, {one.difference:.3g} from the best."
+        )
+        body += _table(found_in(result.solutions[one.law], result.fit.level).values(), one.law)
+    return Section("laws", "Laws", body)
+
+
+def _table(parameters: Iterable[Found], caption: str) -> str:
+    rows = [
+        (
+            found.path,
+            *(f"{x:.4g}" for x in (found.value, found.low, found.high)),
+            found.unit,
+            f"at {100 * found.level:g} %" if found.identifiable else "not by these measurements",
+        )
+        for found in parameters
+    ]
+    return table(("parameter", "value", "from", "to", "unit", "known"), rows, caption)
+
+
+def _figures(pictures: list[Path]) -> Section:
+    body = ""
+    for picture in pictures:
+        caption = escape(CAPTIONS[picture.stem])
+        data = base64.b64encode(picture.read_bytes()).decode()
+        body += (
+            f'<figure class="picture"><img src="data:image/png;base64,{data}" alt="{caption}">'
+            f"<figcaption>{caption}</figcaption></figure>"
+        )
+    return Section("figures", "Figures", body)
+
+
+def _runs(result: FitResult, directory: Path) -> Section:
+    """A row for each run, those with the least misfit first, with a link to its page."""
+    several = len(result.solutions) > 1
+    rows = sorted(
+        (
+            (_chi2(solution, point), law, solution, point)
+            for law, solution in result.solutions.items()
+            for point in solution.runs.points
+        ),
+        key=lambda row: (row[0], row[1]),
     )
+    head = [*(["law"] if several else []), "values", "model", "χ²", "pages of its tests"]
+    body = ""
+    for chi2, law, solution, point in rows:
+        cells = [_values(point), _model(solution, point), "–" if math.isinf(chi2) else f"{chi2:.4g}"]
+        body += f"<tr>{_law(law) if several else ''}{''.join(map(_cell, cells))}"
+        body += f"<td>{_links(solution, point, directory)}</td></tr>"
+    headings = "".join(f'<th scope="col">{escape(heading)}</th>' for heading in head)
+    listed = (
+        '<div class="scroll tall" tabindex="0" role="region" aria-label="Runs"><table>'
+        f"<thead><tr>{headings}</tr></thead><tbody>{body}</tbody></table></div>"
+    )
+    said = f"{result.runs} runs, those that fit best first; runs.nc contains all of them. "
+    return Section("runs", "Runs", note(f"{said}Model 1 is the coarsest.") + listed)
 
 
-def _row(found: Found) -> str:
-    numbers = "".join(f'<td class="number">{x:.4g}</td>' for x in (found.value, found.low, found.high))
-    known = f"at {100 * found.level:g} %" if found.identifiable else "not by these measurements"
-    return f"<tr><td>{escape(found.path)}</td>{numbers}<td>{escape(found.unit)}</td><td>{known}</td></tr>"
+def _law(name: str) -> str:
+    return f'<th scope="row">{escape(name)}</th>'
 
 
-def _list(title: str, sentences: list[str]) -> str:
-    items = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
-    return f"<h2>{escape(title)}</h2><ul>{items}</ul>" if items else ""
+def _cell(text: str) -> str:
+    return f"<td>{escape(text)}</td>"
+
+
+def _values(point: Point) -> str:
+    return ", ".join(f"{value:.4g}" for value in point.values.values())
+
+
+def _model(solution: Solution, point: Point) -> str:
+    return f"{point.stage + 1} of {solution.runs.stages}"
+
+
+def _links(solution: Solution, point: Point, directory: Path) -> str:
+    """Links to the pages of the tests at a point; their names where there is no page."""
+    found = []
+    for test, member in zip(solution.runs.tests, point.members, strict=True):
+        page = solution.runs.page(member)
+        name = escape(test.name)
+        if page is not None:
+            name = f'<a href="{escape(quote(page.relative_to(directory).as_posix()))}">{name}</a>'
+        found.append(name)
+    return ", ".join(found)
+
+
+def _chi2(solution: Solution, point: Point) -> float:
+    """Misfit of a point; infinite where a guard stopped a run."""
+    if point.predicted is None:
+        return math.inf
+    return float(np.sum(solution.survey.likelihood.misfit.residuals(point.predicted.value) ** 2))

@@ -136,8 +136,8 @@ class Likelihood:
 def _end(
     place: np.ndarray, points: np.ndarray, above: np.ndarray, middle: int, way: int
 ) -> tuple[float, np.ndarray, bool]:
-    """Where the excess first rises above the limit on one side, the point there, and whether it never "
-    "does."""
+    """Where the excess first rises above the limit on one side, the point there, and whether it never
+    does."""
     number = middle
     while 0 <= number + way < len(place):
         if above[number + way] > 0:

@@ -56,7 +56,7 @@ def fit(
         OutputError: the directory cannot be written.
     """
     require_scipy()
-    from .directory import FitDirectory
+    from .directory import PAGE, FitDirectory
 
     wanted = fit if isinstance(fit, Fit) else load_fit(fit) if isinstance(fit, str | Path) else parse_fit(fit)
     candidates = prepared(wanted)
@@ -71,7 +71,8 @@ def fit(
         stack.enter_context(directory.claimed(wanted))
         if executor is None:
             executor = stack.enter_context(processes(workers or max(1, cores() // threads), False))
-        result = _fitted(wanted, candidates, directory.store, threads, executor, listen)
+        page = PAGE if kept and wanted.pages else None
+        result = _fitted(wanted, candidates, directory.store, threads, executor, listen, page)
         if kept:
             directory.write(result)
         else:
@@ -121,7 +122,15 @@ def _law(test: Test) -> str:
     return test.stages[-1].case.bodies[0].material.law
 
 
-def _fitted(fit: Fit, candidates, store, threads: int, executor: Executor, listen: Listener | None):
+def _fitted(
+    fit: Fit,
+    candidates,
+    store,
+    threads: int,
+    executor: Executor,
+    listen: Listener | None,
+    page: str | None,
+):
     from .coordinates import Coordinates
     from .flow_curve import flow_curves
     from .model_error import known_errors
@@ -130,7 +139,7 @@ def _fitted(fit: Fit, candidates, store, threads: int, executor: Executor, liste
 
     purse, solutions = Purse(fit.budget), {}
     for name, (alternative, tests) in candidates.items():
-        runs = Runs(tests, store, threads, purse, executor, listen)
+        runs = Runs(tests, store, threads, purse, executor, listen, page)
         solutions[name] = solve(
             runs, Coordinates(alternative.parameters), known_errors(fit, tests), fit.level
         )

@@ -6,6 +6,7 @@ import time as clock
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import xarray
@@ -91,6 +92,7 @@ class Runs:
         purse: the rest of the budget.
         executor: runs them.
         listen: called for each run that has ended.
+        page: file name of the page of the fit, to which the pages of its runs link; None for no pages.
     """
 
     def __init__(
@@ -101,12 +103,13 @@ class Runs:
         purse: Purse,
         executor: Executor,
         listen: Listener | None = None,
+        page: str | None = None,
     ) -> None:
         self.tests = list(tests)
         self.stages = max(len(test.stages) for test in tests)
         self.points: list[Point] = []
         self._store, self._threads, self._purse = store, threads, purse
-        self._executor, self._listen = executor, listen
+        self._executor, self._listen, self._page = executor, listen, page
         self._histories: dict[str, xarray.Dataset] = {}
         self._known: dict[tuple[int, tuple[float, ...]], Point] = {}
 
@@ -143,7 +146,12 @@ class Runs:
         waiting = {member.slug: member for member in members if not self._store.settled(member)}
         self._purse.pay(len(waiting))
         execute(
-            list(waiting.values()), self._store, self._threads, executor=self._executor, listen=self._listen
+            list(waiting.values()),
+            self._store,
+            self._threads,
+            executor=self._executor,
+            listen=self._listen,
+            page=self._page,
         )
 
     def history(self, member: Member) -> xarray.Dataset | None:
@@ -152,6 +160,10 @@ class Runs:
         if path is not None and member.slug not in self._histories:
             self._histories[member.slug] = read_dataset(path)
         return self._histories.get(member.slug)
+
+    def page(self, member: Member) -> Path | None:
+        """Page of a run; None if there is none."""
+        return self._store.page(member)
 
     def record(self, member: Member) -> dict:
         """Content of ``member.json`` of a run."""

@@ -124,8 +124,8 @@ def _roughly(point: Point, measured: list[Measured]) -> float:
 def _errors(
     runs: Runs, coordinates: Coordinates, u: np.ndarray, known: list[ModelError | None]
 ) -> list[ModelError | None]:
-    """Errors of the finest models. An unknown one is found from the next coarser model at the same "
-    "point."""
+    """Errors of the finest models. An unknown one is found from the next coarser model at the same
+    point."""
     if runs.stages == 1 or None not in known:
         return known
     values = [coordinates.values(np.clip(u, 1e-6, 1 - 1e-6))]

@@ -43,7 +43,12 @@ class Stage:
             assign(data, path, value)
         case = parse_case(data, source=self.where)
         content = Member({}, resolved(case), case)
-        return Member({"run": content.case_digest[:16]}, content.data, case)
+        name = ", ".join(f"{path} = {_short(value)}" for path, value in values.items())
+        return Member({"run": content.case_digest[:16]}, content.data, case, name=name)
+
+
+def _short(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else shown(value)
 
 
 def stages_of(name: str, test: Test, changes: Changes, measured: list[Measured]) -> list[Stage]:

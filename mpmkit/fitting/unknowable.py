@@ -1,4 +1,4 @@
-"""What cannot be known from the measurements, in plain words."""
+"""Sentences about parameters that the measurements do not determine."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def correlation(solution: Solution) -> np.ndarray:
 
 
 def sentences(solution: Solution, names: Names) -> list[str]:
-    """What cannot be known, and what does not fit."""
+    """Sentences about parameters that are not determined, and about measurements that the model misses."""
     said = []
     for index, interval in enumerate(solution.survey.intervals):
         if not solution.survey.bounded[index]:
@@ -42,13 +42,13 @@ def _open(solution: Solution, names: Names, index: int, interval: Interval) -> s
     from_prior = not (interval.low_open or interval.high_open)
     if flat:
         depends = "do not depend" if len(flat) > 1 else "does not depend"
-        prior = " Its interval comes from its prior alone." if from_prior else ""
+        prior = " Its interval comes only from its prior." if from_prior else ""
         between = names.said(path, flat_low, flat_high)
         return f"The {' and the '.join(flat)} {depends} on the {name} {between}.{prior}"
     if from_prior or (interval.low_open and interval.high_open):
         return (
-            f"The {name} cannot be known from these measurements: any value {names.said(path, low, high)} "
-            "fits them, because another parameter compensates for it."
+            f"These measurements do not determine the {name}: any value {names.said(path, low, high)} fits "
+            "them, because another parameter compensates for it."
         )
     end, known = (high, "at most") if interval.low_open else (low, "at least")
     bound = "lower" if interval.low_open else "upper"

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_val
 
 from ..contracts.base import quantity
 from ..spaces import Space
+from . import turning
 
 Hull = tuple[np.ndarray, float]
 """Points, m, (m, dim), and how far, m, a body reaches beyond their convex hull."""
@@ -224,12 +225,7 @@ class Rotation(Spell):
     def problem(self, space: Space) -> str | None:
         if space.radial:
             return f"kind is 'rotation', which the space {space.name} does not have"
-        if space.dim == 3 and (self.axis is None or not any(self.axis)):
-            what = "missing" if self.axis is None else self.axis
-            return f"axis is {what}; in the space {space.name} it must be a direction, such as [0, 0, 1]"
-        if space.dim == 2 and self.axis is not None:
-            return f"axis is {self.axis}, but in the space {space.name} it is out of the plane: leave it out"
-        return super().problem(space)
+        return turning.axis_problem(self.axis, space.dim, space.name) or super().problem(space)
 
     def in_words(self, axes: tuple[str, ...]) -> str:
         direction = "" if self.axis is None else f"the direction ({_numbers(self.axis)}) through "
@@ -245,25 +241,16 @@ class Rotation(Spell):
         return vectors @ self._turn(t).T
 
     def velocities(self, x: np.ndarray, t: float) -> np.ndarray:
-        return self.rate * self._moves(t, t) * (x - self.point) @ self._generator().T
+        return self.rate * self._moves(t, t) * (x - self.point) @ turning.generator(self.axis).T
 
     def fastest(self, t0: float, t1: float, hull: Hull) -> float:
         points, radius = hull
-        arms = np.linalg.norm((points - self.point) @ self._generator().T, axis=1)
+        arms = np.linalg.norm((points - self.point) @ turning.generator(self.axis).T, axis=1)
         return abs(self.rate) * float(arms.max() + radius) if self._moves(t0, t1) else 0.0
 
-    def _generator(self) -> np.ndarray:
-        """K with K r = axis × r, (dim, dim), for the axis of length 1."""
-        if self.axis is None:
-            return np.array([[0.0, -1.0], [1.0, 0.0]])
-        axis = np.array(self.axis) / np.abs(self.axis).max()  # avoids overflow of its square
-        x, y, z = axis / np.linalg.norm(axis)
-        return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-
     def _turn(self, t: float) -> np.ndarray:
-        """Q = I + sin(α) K + (1 - cos(α)) K², after Rodrigues."""
-        angle, K = self.rate * self._elapsed(t), self._generator()
-        return np.eye(len(K)) + math.sin(angle) * K + (1 - math.cos(angle)) * (K @ K)
+        """Q of the angle turned by so far."""
+        return turning.rotation(self.axis, self.rate * self._elapsed(t))
 
 
 def _numbers(values: list[float]) -> str:

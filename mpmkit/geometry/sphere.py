@@ -1,4 +1,4 @@
-"""The sphere."""
+"""The sphere, which may be hollow."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from typing import Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from ..contracts.base import quantity
 from ..spaces import Space
@@ -15,13 +16,25 @@ from .revolved import part_of_revolved
 
 
 class Sphere(Shape):
-    """Sphere, V = 4/3 π R³; a disc in plane strain. In an axisymmetric scene its centre is [0, z]."""
+    """Sphere, V = 4/3 π (R³ − R_i³); a disc or a ring in plane strain. In an axisymmetric scene its centre is
+    [0, z]."""
 
     kind: Literal["sphere"]
     centre: list[float] = quantity("m", "centre", min_length=2, max_length=3)
     radius: float = quantity("m", "radius", gt=0)
+    inner_radius: float = quantity("m", "radius of a hollow in its middle; default: none", default=0.0, ge=0)
 
     turned = True
+
+    @model_validator(mode="after")
+    def _has_volume(self) -> Sphere:
+        if self.inner_radius >= self.radius:
+            raise ValueError(f"inner_radius is {self.inner_radius}; it must be below radius, {self.radius}")
+        return self
+
+    @property
+    def _radii(self) -> tuple[float, ...]:
+        return (self.radius, self.inner_radius) if self.inner_radius else (self.radius,)
 
     def _middle(self) -> tuple[float, float]:
         return self.centre[0], self.centre[1]
@@ -32,33 +45,47 @@ class Sphere(Shape):
         )
 
     def _solid(self, space: Space) -> Solid:
-        return Ball(np.array(self.centre, dtype=float), self.radius)
+        return Ball(np.array(self.centre, dtype=float), self.radius, self.inner_radius)
 
     def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
         lower = [x - self.radius for x in self.centre]
         return [0.0, *lower[1:]] if space.radial else lower, [x + self.radius for x in self.centre]
 
     def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
-        return squared_distance(points, self.centre) <= (self.radius + tolerance) ** 2
+        square = squared_distance(points, self.centre)
+        within = max(self.inner_radius - tolerance, 0.0)
+        return (square <= (self.radius + tolerance) ** 2) & (square >= within**2)
 
     def _size(self, space: Space) -> float:
         if space.dim == 3:
             return self._volume(space)
-        return disc_area(self.radius) / (2 if space.radial else 1)
+        return self._ring() / (2 if space.radial else 1)
 
     def _volume(self, space: Space) -> float:
         if space.dim == 2 and not space.radial:
-            return disc_area(self.radius)
-        return 4 / 3 * math.pi * self.radius**3
+            return self._ring()
+        return 4 / 3 * math.pi * (self.radius**3 - self.inner_radius**3)
+
+    def _ring(self) -> float:
+        return disc_area(self.radius) - disc_area(self.inner_radius)
 
     def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        outer, *inner = (self._part(radius, lower, upper, space) for radius in self._radii)
+        return outer - sum(inner)
+
+    def _part(self, outer: float, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+        """Volume of the part of a full sphere between two corners, m³."""
         *middle, height = self.centre
 
         def heights(radius: float) -> list[float]:
-            half = math.sqrt(max(self.radius**2 - radius**2, 0.0))
+            half = math.sqrt(max(outer**2 - radius**2, 0.0))
             return [height - half, height + half]
 
         def radius(z: np.ndarray) -> np.ndarray:
-            return np.sqrt(np.maximum(self.radius**2 - (z - height) ** 2, 0.0))
+            return np.sqrt(np.maximum(outer**2 - (z - height) ** 2, 0.0))
 
-        return part_of_revolved(radius, heights, middle, lower, upper, space)
+        low, high = np.array(lower, dtype=float), np.array(upper, dtype=float)
+        low[-1], high[-1] = max(low[-1], height - outer), min(high[-1], height + outer)
+        if low[-1] >= high[-1]:
+            return 0.0
+        return part_of_revolved(radius, heights, middle, low, high, space)

@@ -127,10 +127,13 @@ def _package(module: str) -> str:
 
 
 def digest(sources: tuple[Path, ...], versions: tuple[str, ...] = ()) -> str:
-    """Of the content of all Python files in these folders, or of these files."""
+    """Of the names and contents of all Python files in these folders, or of these files.
+
+    It does not depend on where a folder is: another copy of the same sources finds the same code.
+    """
     total = hashlib.sha256("\0".join(versions).encode())
     for source in sources:
-        files = sorted(source.rglob("*.py")) if source.is_dir() else [source]
+        root, files = (source, sorted(source.rglob("*.py"))) if source.is_dir() else (source.parent, [source])
         for file in filter(Path.is_file, files):  # an editor's lock is a link to nowhere
-            total.update(str(file).encode() + b"\0" + file.read_bytes())
+            total.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes())
     return total.hexdigest()[:16]

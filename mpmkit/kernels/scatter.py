@@ -76,16 +76,16 @@ def scatter(dim: int, support: int):
     """The kernel that maps mass, momentum and force to the nodes, for a shape function of that support.
 
     ``scatter(nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume,
-    stress, pressure, gravity, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``) and the
-    force (if ``forces``) of all particles.
+    stress, pressure, acceleration, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``)
+    and the force (if ``forces``) of all particles. ``acceleration`` has a row for each, or one for all.
 
     m v = Σ m N (v + C (x_node - x̄)), with the affine part C, 1/s, where ``affine`` has columns, about the
     centroid x̄ = Σ N x_node, so that it adds no momentum.
-    f = Σ m g N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
+    f = Σ m a N - Σ V σ·∇N (eq. 4 of Ferreira et al.), with the hoop stress on the radial component where
     ``hoop`` has columns. ``stress`` holds the extra stress; the Cauchy stress is that minus ``pressure``.
     ``tasks[g, colour, t]`` is the first particle of task t of a colour in group g.
 
-    Both sums have one form. With M = (m, m v, m g) and, for each axis d, the column D_d = (0, m C_d, -V σ_d),
+    Both sums have one form. With M = (m, m v, m a) and, for each axis d, the column D_d = (0, m C_d, -V σ_d),
     a particle adds to the record of a node
 
         N0 N1 N2 M + K0 N1 N2 D_0 + N0 K1 N2 D_1 + N0 N1 K2 D_2,
@@ -104,11 +104,11 @@ def _scatter_2d(support):
     @kernel()
     def scatter_2d(
         nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-        pressure, gravity, cell_size, momentum, forces,
+        pressure, acceleration, cell_size, momentum, forces,
     ):  # fmt: skip
-        radial, has_affine = hoop.shape[1] > 0, affine.shape[1] > 0
+        radial, has_affine, own = hoop.shape[1] > 0, affine.shape[1] > 0, len(acceleration) > 1
         groups, along, low0, low1 = tasks.shape[0], strides[0], lower[0], lower[1]
-        weight_of_mass = pack(0.0, 0.0, 0.0, gravity[0], gravity[1], 0.0, 0.0, 0.0)
+        of_all = pack(0.0, 0.0, 0.0, acceleration[0, 0], acceleration[0, 1], 0.0, 0.0, 0.0)
         of_hoop = pack(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
         normal = pack(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         for colour in range(tasks.shape[1]):
@@ -118,7 +118,11 @@ def _scatter_2d(support):
                         first = (base[p, 0] - low0) * along + (base[p, 1] - low1)
                         m, weighs, V = mass[p] * momentum, mass[p] * forces, -volume[p] * forces
                         M = scale(m, _BESIDE(load_first(velocity, 2 * p, 2), spread(1.0)))
-                        M = plus(M, weighs, weight_of_mass)
+                        pull = of_all
+                        if own:
+                            a0, a1 = acceleration[p, 0], acceleration[p, 1]
+                            pull = pack(0.0, 0.0, 0.0, a0, a1, 0.0, 0.0, 0.0)
+                        M = plus(M, weighs, pull)
                         sigma = plus(load_first(stress, 6 * p, 6), -pressure[p], normal)
                         C = load_first(affine, 4 * p, 4) if has_affine else zero()
                         m *= cell_size
@@ -160,12 +164,12 @@ def _scatter_3d(support):
     @kernel()
     def scatter_3d(
         nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume, stress,
-        pressure, gravity, cell_size, momentum, forces,
+        pressure, acceleration, cell_size, momentum, forces,
     ):  # fmt: skip
-        has_affine = affine.shape[1] > 0
+        has_affine, own = affine.shape[1] > 0, len(acceleration) > 1
         groups, low0, low1, low2 = tasks.shape[0], lower[0], lower[1], lower[2]
         plane, line = strides[0], strides[1]
-        weight_of_mass = pack(0.0, 0.0, 0.0, 0.0, gravity[0], gravity[1], gravity[2], 0.0)
+        of_all = pack(0.0, 0.0, 0.0, 0.0, acceleration[0, 0], acceleration[0, 1], acceleration[0, 2], 0.0)
         normal = pack(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
@@ -174,7 +178,11 @@ def _scatter_3d(support):
                         first = (base[p, 0] - low0) * plane + (base[p, 1] - low1) * line + (base[p, 2] - low2)
                         m, weighs, V = mass[p] * momentum, mass[p] * forces, -volume[p] * forces
                         M = scale(m, _BESIDE(load_first(velocity, 3 * p, 3), spread(1.0)))
-                        M = plus(M, weighs, weight_of_mass)
+                        pull = of_all
+                        if own:
+                            a0, a1, a2 = acceleration[p, 0], acceleration[p, 1], acceleration[p, 2]
+                            pull = pack(0.0, 0.0, 0.0, 0.0, a0, a1, a2, 0.0)
+                        M = plus(M, weighs, pull)
                         sigma = plus(load_first(stress, 6 * p, 6), -pressure[p], normal)
                         C = C_from_1 = zero()
                         if has_affine:

@@ -81,7 +81,7 @@ def _redistributing(simulation: Simulation, parts: PartClock) -> float:
     with simulation.blaming:
         for _ in range(FORCED):
             operations.begin()
-            operations.stage.shear = operations.stage.time = 1.0
+            operations.stage.shear = operations.stage.elapsed = 1.0
             before = parts.redistributing
             operations.stage.redistribute_if_due(operations.window, operations.sorting)
     return parts.redistributing - before

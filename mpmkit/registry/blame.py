@@ -1,6 +1,6 @@
-"""Whose fault it is: what a plug-in raises, or gives back, is told in one sentence that names it.
+"""Errors of plug-ins: one sentence names the plug-in that raised an exception or returned a wrong value.
 
-Every call of a plug-in happens inside ``blaming_plugins``, while a case is validated and in all that uses it.
+Every call of a plug-in is inside ``blaming_plugins``, in the validation of a case and in everything after it.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from .surroundings import Settings, restore, settings
 Used = Sequence[tuple[str, Plugin | type[Plugin]]]
 """Plug-ins, or their classes, each with its kind."""
 NEUTRAL = ("mpmkit.contracts.", "mpmkit.kernels.")
-"""Modules of the framework that run on behalf of the plug-in that called them."""
+"""Modules of the framework that plug-ins call; an exception in them is a fault of the caller."""
 
 
 class blaming_plugins:
-    """Raise PluginStop where a plug-in raises an exception inside the ``with`` block, or is at fault.
+    """Raise PluginStop if a plug-in raises an exception inside the ``with`` block, or is at fault.
 
-    Whatever a plug-in's own code raises is its fault: a ``SystemExit`` and an error class of the framework as
-    well, since neither is a plug-in's to raise. An interrupt is nobody's fault. One object serves any number
-    of blocks, also one inside another: every step of a run is one, so that a block must cost next to nothing.
+    Every exception of a plug-in's own code is its fault, also a ``SystemExit`` and the error classes of the
+    framework, which a plug-in must not raise. An interrupt is not a fault. One object can be used for any
+    number of blocks, also nested ones. Every step of a run is a block, so that a block must cost very little.
 
     Args:
-        plugins: those that are used; they tell whose the plain functions of a plug-in's module are.
-        when: gives the step and the time, s, that a run has come to; None outside of a run.
+        plugins: the plug-ins that are used; a plain function of the module of one of them belongs to it.
+        when: returns the present step and time, s, of a run; None outside of a run.
 
     Raises:
         PluginStop: says which plug-in raised what, and where; the exception itself is its cause.
@@ -51,18 +51,18 @@ class blaming_plugins:
             plugin = error.plugin
             if plugin is None:
                 culprit = _culprit(error, self._plugins, called=True)
-                if culprit is None:  # a program that uses the framework called it, and no plug-in did
+                if culprit is None:  # the caller is a program that uses the framework, not a plug-in
                     raise TypeError(str(error)) from error
                 plugin = culprit[0]
             raise _stop(f"{named(plugin)} {error}", self._when, error.particle) from error
         culprit = _culprit(error, self._plugins)
-        if culprit is not None:  # else a fault of the framework, or of the user
+        if culprit is not None:  # otherwise it is a fault of the framework, or of the user
             plugin, where = culprit
             raise _stop(f"{named(plugin)} raised {_said(error)} ({where})", self._when) from error
 
 
 def named(plugin: object) -> str:
-    """A plug-in, or its class, as sentences have it."""
+    """A plug-in, or its class, for a sentence."""
     cls = plugin if isinstance(plugin, type) else type(plugin)
     kind = next((kind for kind, (_, contract) in KINDS.items() if issubclass(cls, contract)), None)
     name = getattr(cls, "name", cls.__name__)
@@ -81,7 +81,7 @@ def _stop(what: str, when: Callable[[], tuple[int, float]] | None, particle: int
 
 
 def _said(error: BaseException) -> str:
-    """The kind of an exception and what it says, also of the framework's own kinds."""
+    """The class of an exception and its message."""
     said, kind = reason(error), type(error).__name__
     return said if said.startswith(kind) else f"{kind}: {said}"
 
@@ -89,13 +89,13 @@ def _said(error: BaseException) -> str:
 def _culprit(
     error: BaseException, plugins: Used, called: bool = False
 ) -> tuple[Plugin | type[Plugin], str] | None:
-    """The plug-in whose code was nearest to where an exception was raised, and the place in it.
+    """The plug-in whose code is nearest to the origin of an exception, and the line in it.
 
-    None where code of the framework was nearer, unless it is known to have been ``called`` wrongly.
+    None if code of the framework is nearer, except if it is known that it was ``called`` wrongly.
     """
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         module = str(frame.f_globals.get("__name__"))
-        if module.partition(".")[0] in ("pydantic", "pydantic_core"):  # says what is wrong with values
+        if module.partition(".")[0] in ("pydantic", "pydantic_core"):  # pydantic reports wrong values
             continue
         place = f"{Path(frame.f_code.co_filename).name}, line {line}"
         owner = frame.f_locals.get("self", frame.f_locals.get("cls"))

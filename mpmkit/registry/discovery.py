@@ -1,4 +1,4 @@
-"""Discovery of plug-ins, entry point by entry point: one that is broken never breaks the others."""
+"""Discovery of plug-ins, one entry point after the other: a broken one does not break the others."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .requirements import check
 from .surroundings import settings_and_log_kept
 
 CHOSEN = "MPMKIT_PLUGINS"
-"""Environment variable that names, with commas between, the distributions to load beside mpmkit's own; all of
-them if it is not set, none if it is empty. ``--no-plugins`` of the command line empties it."""
+"""Environment variable with the distributions to load besides mpmkit's own, separated by commas. If it is not
+set, all are loaded; if it is empty, none. ``--no-plugins`` of the command line makes it empty."""
 
 
 def discover() -> Registry:
@@ -40,7 +40,7 @@ def discover() -> Registry:
                 (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # whatever a stranger's module does must stay its own problem
+        except BaseException as error:  # whatever the module of a third party raises must not stop the others
             problems.append(Problem(distribution, name, _reason(error)))
     there = {_normal(_origin(entry_point)[0]) for entry_point in entry_points(group=hooks.PROJECT)}
     for name in sorted((chosen or set()) - there - {_normal(hooks.PROJECT)}):
@@ -49,7 +49,7 @@ def discover() -> Registry:
 
 
 def _chosen() -> set[str] | None:
-    """Distributions to load, None for all of them; mpmkit's own is one of them whatever is asked."""
+    """Distributions to load, always with mpmkit's own; None for all."""
     named = os.environ.get(CHOSEN)
     if named is None:
         return None
@@ -58,7 +58,9 @@ def _chosen() -> set[str] | None:
 
 def _why_left_out() -> str:
     named = os.environ.get(CHOSEN, "")
-    return f"was left out, since {CHOSEN} is '{named}'" if named else "was left out, as --no-plugins asks"
+    return (
+        f"was left out, because {CHOSEN} is '{named}'" if named else "was left out, because of --no-plugins"
+    )
 
 
 def _normal(distribution: str) -> str:
@@ -68,7 +70,7 @@ def _normal(distribution: str) -> str:
 
 @cache
 def installed() -> Registry:
-    """The plug-ins of this environment, discovered once a process."""
+    """The plug-ins of this environment; they are discovered once in each process."""
     return discover()
 
 
@@ -101,13 +103,15 @@ def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
 
 
 def _provided(module: ModuleType) -> Iterator[tuple[str, type[Plugin]]]:
-    """Kinds and classes that the hooks of a module return, not yet looked at."""
-    manager = pluggy.PluginManager(hooks.PROJECT)  # of its own, so that a module that fails leaves no trace
+    """Kinds and classes that the hooks of a module return, not yet checked."""
+    manager = pluggy.PluginManager(
+        hooks.PROJECT
+    )  # a new one for each module, so that a module that fails leaves no trace
     manager.add_hookspecs(hooks)
     kinds = {hook: kind for kind, (hook, _) in KINDS.items()}
     manager.register(module)
     for hook in manager.get_hookcallers(module) or []:
-        if hook.name not in kinds:  # a misspelt hook would otherwise stay silent
+        if hook.name not in kinds:  # otherwise a misspelt hook would be ignored without a message
             near = difflib.get_close_matches(hook.name, kinds, n=1)
             hint = f"did you mean {near[0]}?" if near else f"the hooks are {', '.join(kinds)}"
             raise ValueError(f"it has an unknown hook {hook.name}; {hint}")

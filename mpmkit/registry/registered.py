@@ -1,4 +1,4 @@
-"""What was found in this environment: the usable plug-ins by kind and name, and the problems."""
+"""The plug-ins of this environment: the usable ones by kind and name, and the problems of the others."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class Registered:
 
 @dataclass(frozen=True)
 class Problem:
-    """An entry point, or one plug-in of it, that cannot be used, and why."""
+    """An entry point, or one of its plug-ins, that cannot be used, with the reason."""
 
     distribution: str
     entry_point: str
     reason: str
     kind: str | None = None
-    """Kind and name of the plug-in, where the entry point got far enough to say them."""
+    """Kind and name of the plug-in, if they are known."""
     name: str | None = None
     left_out: bool = False
-    """Whether nothing is wrong with it but that nobody asked for it."""
+    """Whether it was not loaded because it was not asked for."""
 
     def __str__(self) -> str:
         if self.left_out:
@@ -44,7 +44,7 @@ class Problem:
         )
 
     def concerns(self, kind: str, name: str) -> bool:
-        """Whether a case that asks for this plug-in may mean this one."""
+        """Whether a case with this kind and name may mean the plug-in of this problem."""
         if self.kind is not None and self.kind != kind:
             return False
         if self.name is not None:
@@ -53,10 +53,10 @@ class Problem:
 
 
 class Registry:
-    """Every usable plug-in by kind and name, and every problem met on the way.
+    """Every usable plug-in by kind and name, and all problems.
 
-    Two plug-ins of the same kind and name are a problem of both: which one is meant must never be a matter of
-    the order in which they were found.
+    If two plug-ins have the same kind and name, neither can be used: the result must not depend on the order
+    in which they were found.
     """
 
     def __init__(self, found: list[Registered], problems: list[Problem]) -> None:
@@ -74,11 +74,11 @@ class Registry:
                 self._clashes[one.kind, one.name] = reason
 
     def unusable(self, kind: str) -> list[str]:
-        """Names of the plug-ins of one kind that are there but cannot be used, in alphabetical order."""
+        """Names of the plug-ins of one kind that are installed but cannot be used, in alphabetical order."""
         return sorted({problem.name for problem in self.problems if problem.kind == kind and problem.name})
 
     def why_not(self, kind: str, name: str) -> list[str]:
-        """Sentences on the problems by which a plug-in may be missing; of a clash there is one for all."""
+        """Sentences on problems that may be the reason why a plug-in is missing; one sentence for a clash."""
         clash = self._clashes.get((kind, name))
         if clash is not None:
             return [clash]

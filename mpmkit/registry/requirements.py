@@ -1,4 +1,4 @@
-"""What a class must be to be used as a plug-in of its kind."""
+"""The requirements for a class to be a plug-in of a kind."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from ..contracts import (
 from ..contracts.shape import MOST_NODES
 
 RESERVED = {"law": {"law", "density", "sound_speed", "equation_of_state"}}
-"""Parameters that a plug-in cannot have, because something else stands at that key of a case."""
+"""Parameters that a plug-in cannot have, because a case has another value at that key."""
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
 def check(plugin: type[Plugin], kind: str) -> None:
-    """Raise a TypeError or ValueError, with the reason, unless a plug-in can be used as one of this kind."""
+    """Raise a TypeError or ValueError, with the reason, if a class cannot be a plug-in of this kind."""
     contract = KINDS[kind][1]
     if not (isinstance(plugin, type) and issubclass(plugin, contract)):
         raise TypeError(f"{plugin!r} is not a subclass of {contract.__name__}, as a {kind} must be")
@@ -62,7 +62,7 @@ def check(plugin: type[Plugin], kind: str) -> None:
                 raise ValueError(
                     f"its memory '{name}' has the shape {variable.shape}; it must be a number at each node"
                 )
-    plugin.model_json_schema()  # a parameter that has none would break the schema of all
+    plugin.model_json_schema()  # a parameter without a schema would break the schema of cases
 
 
 def _check_field(plugin: type[ParticleField]) -> None:

@@ -28,7 +28,10 @@ KINDS = {
     "equation_of_state": "equation of state",
     "surface": "surface",
     "contact": "contact",
+    "body_force": "body force",
+    "initial_field": "initial field",
     "sink": "sink",
+    "source": "source",
     "diagnostic": "diagnostic",
     "particle_field": "particle field",
 }

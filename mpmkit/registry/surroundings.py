@@ -1,7 +1,7 @@
-"""What a plug-in changes of the process that it shares with all others is undone when it has had its turn.
+"""Settings of the process that a plug-in changes are restored after each of its calls.
 
-Otherwise results could go to another directory, NumPy could raise where a law of another plug-in divides by
-zero, and warnings of a run could be lost.
+Otherwise results could go to another directory, NumPy could raise an error if a law of another plug-in
+divides by zero, and warnings of a run could be lost.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 
 Settings = tuple[str | None, Any]
-"""The working directory, None if it was removed, and how NumPy treats errors."""
+"""The working directory, None if it was removed, and the error handling of NumPy."""
 
 
 def settings() -> Settings:
-    """The present ones: taken in every step of a run, in two microseconds."""
+    """The present settings; they are read in every step of a run, in two microseconds."""
     return _working_directory(), np.geterr()
 
 
 def restore(before: Settings) -> None:
-    """Set back what is no longer as it was."""
+    """Restore the settings that have changed."""
     directory, errors = before
     if directory is not None and _working_directory() != directory:
         os.chdir(directory)
@@ -35,7 +35,7 @@ def restore(before: Settings) -> None:
 
 @contextmanager
 def settings_and_log_kept() -> Iterator[None]:
-    """After the block, the settings, filters of warnings, and what the log lets through are as they were."""
+    """Restore the settings, the filters of warnings and the levels of the log after the block."""
     before = settings()
     manager = logging.root.manager
     disabled = manager.disable

@@ -1,1 +1,1 @@
-"""Flow curves of materials, apart from any scene."""
+"""Flow curves of materials, and closed forms of laboratory tests."""

@@ -1,20 +1,19 @@
-"""Shapes in which a yield-stress fluid comes to rest after a slow flow in a thin layer, on a floor that it
-sticks to.
+"""Shapes of a yield-stress fluid at rest after a slow flow in a thin layer on a floor without slip.
 
-With s = τ0/(ρ g), the balance of a slice of depth h is, where the flow came from lubrication,
+With s = τ0/(ρ g), lubrication theory gives the balance of a slice of depth h:
 
     h dh/dx = -s                                                    (1)
 
-The next order takes into account that the layer is at yield while it is stretched along the flow, too: the
-shear stress falls linearly from τ0 at the floor to 0 at the surface, and what is left of the yield stress
-pulls back with a force of c s/2 times ρ g h on a section:
+The next order includes that the flow also stretches the layer, which is at yield everywhere. The shear
+stress falls linearly from τ0 at the floor to 0 at the surface. The rest of the yield stress acts along the
+flow, and pulls each section back with a force of c s/2 times ρ g h:
 
     h² - c s h = 2 s (R - r),    ending at the front with the depth c s   (2)
 
-c is π for a layer that widens along x only (plane strain), and √3 π/2 for one that widens alike in all
-directions. A spreading cone is between the two. See Dubash, Balmforth, Slim & Cochard 2009, J. Non-Newtonian
-Fluid Mech. 158, for such a correction. (1) is c = 0, too long by terms of the order of depth over
-length.
+c is π for a layer that spreads along x only (plane strain), and √3 π/2 for one that spreads equally in all
+directions. A spreading cone is between the two. Dubash, Balmforth, Slim & Cochard 2009, J. Non-Newtonian
+Fluid Mech. 158, derive such a correction. Equation (1) has c = 0; its deposit is too long, by terms of the
+order of depth over length.
 """
 
 from __future__ import annotations
@@ -23,12 +22,12 @@ import math
 from collections.abc import Callable
 
 PLANE = math.pi
-"""c of a layer that widens along one direction."""
+"""c of a layer that spreads along one direction."""
 BIAXIAL = math.sqrt(3) * math.pi / 2
-"""c of a layer that widens alike along both."""
+"""c of a layer that spreads equally along both directions."""
 STEPS = 2000
 ROUNDS = 3
-"""In which the force of the ends of a closed channel is found; it hardly changes with the depths."""
+"""Iterations for the force of the ends of a closed channel; it hardly changes with the depths."""
 
 
 def cone_spread(volume: float, sink: float, stretching: float = 0.0) -> float:
@@ -54,15 +53,15 @@ def cone_spread(volume: float, sink: float, stretching: float = 0.0) -> float:
 
 
 def channel_length(volume: float, sink: float, width: float = math.inf, stretching: float = 0.0) -> float:
-    """Length, m, of the deposit behind whose end wall a volume was poured, in a channel with sticking walls.
+    """Length, m, of the deposit of a volume that was poured at the end wall of a channel without slip.
 
-    The walls at the sides hold with τ0 as the floor does: s becomes s (1 + 2h/b). With c = 0 this is the
+    The side walls resist with τ0, as the floor does: s becomes s (1 + 2h/b). With c = 0 this is the
     balance of the LCPC box (Roussel 2007, Cem. Concr. Res. 37).
 
     Args:
         volume: m³, or m² for a channel without side walls.
         sink: s, m.
-        width: b, m; the volume is that of a slice of 1 m where it is infinite.
+        width: b, m; if it is infinite, the volume is that of a slice of 1 m.
         stretching: c of equation (2).
     """
     across = 1.0 if math.isinf(width) else width
@@ -82,9 +81,9 @@ def box_depths(
 ) -> tuple[float, float]:
     """Depths, m, at the back and at the end of a closed channel that material has filled to its end.
 
-    The layer is stretched where it leaves the back wall and pressed together where it meets the end wall, so
-    that c changes its sign on the way. Over the whole channel that is a force of c τ0 (h1 + h2)/2 beside the
-    friction τ0 L, and is here spread evenly over it: s becomes s (1 + c (h1 + h2)/(2 L)).
+    The layer is stretched at the back wall and compressed at the end wall, so that c changes its sign
+    between them. Over the whole channel this adds a force of c τ0 (h1 + h2)/2 to the friction τ0 L. Here
+    this force is distributed evenly over the length: s becomes s (1 + c (h1 + h2)/(2 L)).
 
     Args:
         area: m², volume over the width of the channel.
@@ -134,13 +133,13 @@ def slope_length(area: float, sink: float, angle: float, stretching: float = 0.0
 
     high = critical * (1 - 1e-9)
     if found(high)[1] < area:
-        raise ValueError("the volume is more than what comes to rest on the slope")
+        raise ValueError("the volume is larger than the largest that can rest on the slope")
     top = _bisect(lambda h: found(h)[1] - area, 1e-6 * critical, high)
     return found(top)[0]
 
 
 def _behind(h: float, sink: float, c: float) -> float:
-    """How far behind the front the depth is h, m."""
+    """Distance behind the front, m, at which the depth is h."""
     return (h * h - c * sink * h) / (2 * sink)
 
 
@@ -155,7 +154,7 @@ def _integral(f: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _solve(found: Callable[[float], tuple[float, float]], volume: float, sink: float, c: float) -> float:
-    """The length of the deposit that holds a volume; ``found`` gives both for the depth at its top."""
+    """The length of the deposit of a volume; ``found`` gives both for the depth at its top."""
     low, high = c * sink * (1 + 1e-9) + 1e-12, 1.0
     while found(high)[1] < volume:
         high *= 2

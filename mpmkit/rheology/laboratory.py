@@ -1,4 +1,4 @@
-"""What closed forms say of the laboratory's tests that ship; docs and validation hold runs against them."""
+"""Closed forms of the shipped laboratory tests; docs and validation compare runs with them."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from .deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
-from .rotation import cylinder_torque
+from .funnels import Sections, flow_time, rectangles
+from .rotation import coaxial_torque, cylinder_torque
 
 G = 9.81
 SQRT3 = math.sqrt(3)
@@ -17,13 +20,13 @@ Given = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Formula:
-    """A closed form of what a case measures.
+    """A closed form of a measurement of a case.
 
     Args:
         measured: name of the measurement, or of a variable of the history.
-        words: what the formula is.
-        value: of the parameters of the case.
-        band: how far, relative, a run may be off it; None for one that leaves out too much to be held to.
+        words: the name of the formula.
+        value: its value for the parameters of the case.
+        band: largest relative difference of a run; None if the formula neglects too much for a comparison.
     """
 
     measured: str
@@ -60,15 +63,15 @@ def _ratio(p: Given, stretching: float) -> float:
 
 
 def _cone_slump(p: Given, uniaxial: float) -> float:
-    """Slump of a cone whose foot is twice as wide as its top, m.
+    """Slump, m, of a cone whose base is twice as wide as its top.
 
     Schowalter & Christensen 1998, J. Rheol. 42: s/H = 1 - h0 - 2τ' ln(7/((1 + h0)³ - 1)); above h0 H the
     material has not yielded, τ' = τ0/(ρ g H) = ((1 + h0) - (1 + h0)⁻²)/6.
 
     Args:
         p: parameters.
-        uniaxial: σ/τ0 at which a column yields under its weight. The authors take 2, as of Tresca; it is √3
-            by von Mises, whose yield stress the laws here have, so that τ' becomes √3/2 τ'.
+        uniaxial: σ/τ0 at which a column yields under its weight. The authors use 2, Tresca's criterion. The
+            laws here use von Mises' criterion, which gives √3, so that τ' becomes √3/2 τ'.
     """
     relative = uniaxial / 2 * sink(p) / p["mould_height"]
     low, high = 0.0, 1.0
@@ -100,6 +103,27 @@ def _friction(p: Given) -> tuple[float, float]:
 def _squeeze(p: Given) -> float:
     friction, radius = _friction(p)
     return friction + math.sqrt(3) * math.pi * p["yield_stress"] * radius**2
+
+
+def _v_funnel(p: Given) -> float:
+    outlet, top, depth = p["outlet_width"], p["top_width"], p["depth"]
+    slanted, straight = p["funnel_height"], p["outlet_height"]
+
+    def sections(z: np.ndarray) -> Sections:
+        return rectangles(np.interp(z, [straight, straight + slanted], [outlet, top]), depth)
+
+    volume = p["emptied_part"] * depth * (outlet * straight + (outlet + top) / 2 * slanted)
+    return flow_time(straight + slanted, volume, sections, *_fluid(p))
+
+
+def _fluid(p: Given) -> tuple[float, float, float]:
+    return p["density"], p["yield_stress"], p["plastic_viscosity"]
+
+
+def _coaxial(p: Given) -> float:
+    _, *fluid = _fluid(p)
+    radii = p["inner_radius"], p["outer_radius"], p["cylinder_height"]
+    return coaxial_torque(*radii, 2 * math.pi * p["turns_per_second"], *fluid)
 
 
 def _vane(p: Given, turns: float) -> float:
@@ -148,9 +172,14 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("plate_force", "friction and stretching, 2π τ0 R³/(3h) + √3 π τ0 R²", _squeeze, 0.1),
         Formula("plate_force", "friction on the plates, 2π τ0 R³/(3h)", lambda p: _friction(p)[0], None),
     ],
+    "v_funnel": [
+        Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",
+                _v_funnel, None)
+    ],
+    "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],
     "vane": [
         Formula("torque_of_vane", "a cylinder that turns, Reiner & Riwlin", _turning_vane, 0.05),
         Formula("torque_of_vane", "start of flow, 2π R² h τ0", lambda p: _vane(p, 1e-12), None),
     ],
 }  # fmt: skip
-"""By the name of the case; the first of each is the one to trust."""
+"""By the name of the case; the first formula of each case is the most accurate."""

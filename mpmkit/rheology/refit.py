@@ -1,4 +1,4 @@
-"""Another law for the same material: what both have is kept, the rest is fitted to the flow curve."""
+"""Another law for the same material: common parameters are kept, the others are fitted to the flow curve."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..registry.blame import blaming_plugins
 from .flow_curve import flow_curve
 
 RATES = np.geomspace(0.1, 10.0, 41)
-"""Shear rates, 1/s, over which the curves are to agree: those of a slump, and of rheometers for concrete."""
+"""Shear rates, 1/s, at which the curves are fitted: those of a slump, and of rheometers for concrete."""
 ITERATIONS = 60
 FLUIDS = (GeneralisedNewtonianLaw, ElastoviscoplasticLaw)
 
@@ -20,14 +20,14 @@ FLUIDS = (GeneralisedNewtonianLaw, ElastoviscoplasticLaw)
 def with_law(material: dict[str, Any], name: str, registry: Registry) -> tuple[dict[str, Any], list[str]]:
     """The material with the law ``name``, and what was fitted, as sentences.
 
-    Parameters that both laws have are kept. Those that the new one has alone, and needs, are chosen so that
-    the stress in simple shear agrees in the least squares over ``RATES``, by Gauss and Newton in the
-    logarithms of the parameters. Where one of the two has no flow curve, nothing is fitted.
+    Parameters that both laws have are kept. Required parameters that only the new law has are fitted to the
+    stress in simple shear at ``RATES``, by least squares (Gauss-Newton iteration in the logarithms of the
+    parameters). If one of the two laws has no flow curve, nothing is fitted.
 
     Args:
-        material: of a case file, its law named and its parameters given.
+        material: the material of a case file, with its law and parameters.
         name: of the new law.
-        registry: where both are found.
+        registry: contains both laws.
 
     Raises:
         PluginStop: one of the two laws is at fault.
@@ -50,7 +50,7 @@ def _refitted(
     shared = {key: kept[key] for key in new.model_fields if key in kept}
     try:
         before = old.model_validate({k: material[k] for k in old.model_fields if k in material})
-    except ValueError:  # the case will be refused, in words of its own
+    except ValueError:  # the check of the case will report it
         return kept, []
     target = flow_curve(before, RATES)
     if not missing or target is None or not issubclass(new, FLUIDS):
@@ -75,7 +75,7 @@ def _fit(
         found = curve(at)
         slopes = np.stack([(curve(at + step) - found) / 1e-6 for step in 1e-6 * np.eye(len(missing))], axis=1)
         change = np.linalg.lstsq(slopes, target - found, rcond=None)[0]
-        at = at + np.clip(change, -1.0, 1.0)  # a parameter changes by a factor e at the most
+        at = at + np.clip(change, -1.0, 1.0)  # a parameter changes by at most a factor e
         if np.abs(change).max() < 1e-12:
             break
     return {key: float(f"{value:.8g}") for key, value in zip(missing, np.exp(at), strict=True)}

@@ -19,6 +19,7 @@ from ..solver.density_watch import warning
 from ..solver.simulation import Simulation
 from .conclusion import conclude, salvage
 from .interrupts import held_interrupts
+from .pace import Pace
 from .recorder import Recorder
 from .saver import Saver
 from .setting import setting
@@ -140,7 +141,8 @@ def _advance(
     interrupted: Callable[[], bool],
 ) -> None:
     simulation = recorder.simulation
-    told = clock.monotonic()
+    told, pace = clock.monotonic(), Pace()
+    pace.note(told, simulation.time)
     warned = warned_of_density = False
     while not _over(recorder):
         if interrupted():
@@ -161,10 +163,12 @@ def _advance(
         now = clock.monotonic()
         if listen is not None and now - told > TOLD_EVERY:
             told = now
-            listen(_progress(simulation, watch.elapsed))
+            pace.note(now, simulation.time)
+            if pace.known:
+                listen(_progress(simulation, watch.elapsed, pace))
     simulation.check()
     if listen is not None:
-        listen(_progress(simulation, watch.elapsed))
+        listen(_progress(simulation, watch.elapsed, pace))
 
 
 def _over(recorder: Recorder) -> bool:
@@ -190,9 +194,8 @@ def _step(recorder: Recorder, saver: Saver | None) -> None:
         saver.save_if_possible()
 
 
-def _progress(simulation: Simulation, elapsed: float) -> Progress:
+def _progress(simulation: Simulation, elapsed: float, pace: Pace) -> Progress:
     end = simulation.case.end
-    done = simulation.time / end
     speed = simulation.particle_steps / elapsed
-    earlier, left = bool(conditions(simulation.case.until)), elapsed * (1 - done) / done
+    earlier, left = bool(conditions(simulation.case.until)), pace.left(end - simulation.time)
     return Progress(simulation.time, end, earlier, simulation.steps, speed, left)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from ..kernels.sums import kinetics
 from ..kernels.tensors import shear_rate
-from ..output.flow import TYPES, Moment, arrays_of, moment_of, moments_of_arrays
-from ..solver.particle_fields import mean_pressure, yielded
+from ..output.flow import Moment, arrays_of, moment_of, moments_of_arrays
+from ..solver.particle_fields import added_fields, mean_pressure, yielded
 from ..solver.simulation import Simulation
+from ..solver.state_fields import state_fields
 from ..solver.stateful import State, plain_state, restore_plain
 
 MOMENTS = 100
@@ -60,10 +60,14 @@ class FlowRecord:
         restore_plain(self, state)
         self._changes = state["changes/"].tolist()
         moments = {name.partition("/")[2]: array for name, array in state.items() if "moments/" in name}
-        self.moments = [_owned(moment) for moment in moments_of_arrays(moments)]
+        self.moments = [
+            moment.copied() for moment in moments_of_arrays(moments)
+        ]  # of a state that may change
 
     def look(self, simulation: Simulation) -> None:
         """Add the present step if enough may have changed since the last moment."""
+        if not len(simulation.particles):
+            return
         mass, doubled, _ = kinetics(simulation.particles.mass, simulation.particles.velocity)
         before, self._speed = self._speed, math.sqrt(doubled / mass)
         if self.moments:
@@ -75,7 +79,7 @@ class FlowRecord:
 
     def add(self, simulation: Simulation) -> None:
         """Add the present step if it is new; another moment may be removed for it."""
-        if self._last == simulation.steps:
+        if self._last == simulation.steps or not len(simulation.particles):
             return
         self._last = simulation.steps
         self.moments.append(self._moment(simulation))
@@ -100,9 +104,13 @@ class FlowRecord:
             "shear_rate": shear_rate(p.velocity_gradient),
             "pressure": mean_pressure(p),
         }
+        with simulation.blaming:
+            added = state_fields(p) | added_fields(simulation)
+        numbers = {name: field for name, field in added.items() if field.ndim == 1}
         if not kept.all():
             fields = {name: field[kept] for name, field in fields.items()}
-        return moment_of(simulation.time, self._share, fields)
+            numbers = {name: field[kept] for name, field in numbers.items()}
+        return moment_of(simulation.time, self._share, fields, numbers)
 
     def _kept(self, number: np.ndarray) -> np.ndarray:
         """Which particles are kept, by their numbers; after many splits, a smaller share is kept."""
@@ -129,8 +137,3 @@ class FlowRecord:
         least = int(np.argmin(around))
         del self.moments[least + 1]
         self._changes[least : least + 2] = [float(around[least])]
-
-
-def _owned(moment: Moment) -> Moment:
-    """The moment with copies of its arrays: arrays of a state may be views."""
-    return replace(moment, **{name: getattr(moment, name).copy() for name in TYPES})

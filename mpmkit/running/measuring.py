@@ -1,4 +1,4 @@
-"""The functions for measurements of a case: depth, front, and the forces of walls."""
+"""The functions for measurements of a case: depth, front, the forces of walls, and what sinks take."""
 
 from __future__ import annotations
 
@@ -18,10 +18,7 @@ def measurements(simulation: Simulation, row: Mapping[str, Any]) -> dict[str, fl
     if not simulation.case.measurements:
         return {}
     names = {name: float(row[name]) for name in NAMES if name in row} | {"time": simulation.time}
-    look = _Look(simulation, row)
-    return measured(
-        simulation.case.measurements, names, functions(look.depth, look.front, look.force, look.torque)
-    )
+    return measured(simulation.case.measurements, names, functions(_Look(simulation, row)))
 
 
 class _Look:
@@ -30,25 +27,34 @@ class _Look:
     def __init__(self, simulation: Simulation, row: Mapping[str, Any]) -> None:
         self._simulation, self._row = simulation, row
 
-    def depth(self, x: float) -> float:
-        """Mean depth of the material, m, within half a cell of a place along the first axis, m.
+    def depth(self, *place: float) -> float:
+        """Mean depth of the material, m, within half a cell of a place along the first axis, m; in 3-D also
+        within half a cell of a place along y, if that is given.
 
-        d = Σ V_p w_p / (b Y): w_p is the part of a particle's box within the strip, b the width of the strip
-        that is in the domain and Y the domain's width along y. In an axisymmetric scene V/(2πr) stands for V.
+        d = Σ V_p w_p / A: w_p is the part of a particle's box over the strip or the cell, and A the area of
+        that in the domain. In an axisymmetric scene V/(2πr) stands for V.
         """
         s = self._simulation
-        p, grid, space = s.particles, s.grid, s.case.space_
-        middle = x - grid.lower[0]
-        low = max(middle - grid.cell_size / 2, 0.0)
-        high = min(middle + grid.cell_size / 2, float(grid.extent[0]))
-        width = float(grid.extent[1]) if grid.dim == 3 else 1.0
-        volume = p.volume / (2 * np.pi * p.position[:, 0]) if space.radial else p.volume
-        half = np.minimum(p.box[:, 0], grid.cell_size / 2)
+        p, grid = s.particles, s.grid
+        volume = p.volume / (2 * np.pi * p.position[:, 0]) if s.case.space_.radial else p.volume
+        area = float(np.prod(grid.extent[len(place) : -1]))
+        for axis, x in enumerate(place):
+            part, length = self._share(axis, x - grid.lower[axis])
+            volume, area = volume * part, area * length
+        return float(volume.sum() / area)
+
+    def _share(self, axis: int, middle: float) -> tuple[np.ndarray, float]:
+        """Part of each particle's box, (n,), that is within half a cell of a place along an axis of the grid,
+        and the length, m, of that strip."""
+        s = self._simulation
+        p, grid, end = s.particles, s.grid, float(s.grid.extent[axis])
+        low, high = max(middle - grid.cell_size / 2, 0.0), min(middle + grid.cell_size / 2, end)
+        half = np.minimum(p.box[:, axis], grid.cell_size / 2)
         # The part of a box behind a face is moved in front of it, so that no volume is lost.
-        left = np.maximum(p.position[:, 0] - half, 0.0)
-        right = np.minimum(p.position[:, 0] + half, float(grid.extent[0]))
+        left = np.maximum(p.position[:, axis] - half, 0.0)
+        right = np.minimum(p.position[:, axis] + half, end)
         part = np.clip(np.minimum(right, high) - np.maximum(left, low), 0.0, None) / (right - left)
-        return float((volume * part).sum() / ((high - low) * width))
+        return part, high - low
 
     def front(self) -> float:
         """End of the material along the first axis, m; boxes count as in ``spread_diameter``."""
@@ -65,3 +71,7 @@ class _Look:
     def torque(self, wall: str) -> float:
         """Torque of a wall on the material about the origin, N m, likewise, in plane strain."""
         return float(self._row["wall_torque"][self._simulation.wall_names.index(wall), 0])
+
+    def outflow(self, sink: str) -> float:
+        """Rate at which a sink takes mass, kg/s, mean over the time since the last row."""
+        return float(self._row["sink_rate"][list(self._simulation.case.sinks).index(sink)])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..case.model import Case
 from ..case.plugins import plugins_of
-from ..errors import CaseError, GuardStop, OutputError, Undrawn, reason
+from ..errors import CaseError, GuardStop, Interrupted, OutputError, Undrawn, reason
 from ..kernels.environment import require_threads
 from ..output import RunDirectory, open_log, write_json
 from ..output.copies import Copies
@@ -43,6 +43,7 @@ def run(
     threads: int | None = None,
     listen: Listener | None = None,
     checkpoint_every: float | None = None,
+    draw: bool = True,
 ) -> xarray.Dataset:
     """Run a case to its end.
 
@@ -54,6 +55,8 @@ def run(
         listen: called with the progress a few times a second.
         checkpoint_every: wall time, s, between two checkpoints in ``out``, for ``resume``. A checkpoint is
         always written on Ctrl-C and before the last step.
+        draw: whether the report is drawn at the end, if ``output.report`` asks for it; ``mpmkit report``
+            can draw it later.
 
     Returns:
         The history, with dimensions ``(time)`` and ``(time, component)``, and ``(time, particle, …)`` for
@@ -78,7 +81,7 @@ def run(
             execute(recorder, Stopwatch(), used, listen, None)
         else:
             directory = RunDirectory(Path(out), overwrite, keep={file.name for file in files})
-            recorder = _run_in(directory, case, files, simulation, used, listen, checkpoint_every)
+            recorder = _run_in(directory, case, files, simulation, used, listen, checkpoint_every, draw)
     return recorder.history.dataset()
 
 
@@ -90,6 +93,7 @@ def _run_in(
     threads: int,
     listen: Listener | None,
     checkpoint_every: float | None,
+    draw: bool,
 ) -> Recorder:
     # Read all files before anything is overwritten: they may be in the same directory.
     contents, data, itself = {file.name: file.content() for file in files}, portable(case), identity(case)
@@ -104,7 +108,7 @@ def _run_in(
             LOGGER.error("%s", error)
             raise
         watch = Stopwatch()
-        _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself))
+        _execute(recorder, threads, listen, watch, Saver(recorder, watch, checkpoint_every, itself), draw)
     return recorder
 
 
@@ -155,7 +159,8 @@ def resume(
                 said = _attributes(found, used, portable(found))
                 recorder, watch = Recorder(simulation, said, files, goes_on=True), Stopwatch()
                 _restore(recorder, watch, state, path)
-                _execute(recorder, used, listen, watch, Saver(recorder, watch, checkpoint_every, identity_))
+                saver = Saver(recorder, watch, checkpoint_every, identity_)
+                _execute(recorder, used, listen, watch, saver, draw=True)
     return recorder.history.dataset()
 
 
@@ -175,9 +180,16 @@ def _attributes(case: Case, threads: int, data: dict[str, Any]) -> dict[str, str
 
 
 def _execute(
-    recorder: Recorder, threads: int, listen: Listener | None, watch: Stopwatch, saver: Saver
+    recorder: Recorder,
+    threads: int,
+    listen: Listener | None,
+    watch: Stopwatch,
+    saver: Saver,
+    draw: bool,
 ) -> None:
-    """Run to the end in a directory, and draw the pictures, even if a guard stopped the run.
+    """Run to the end in a directory, and draw the report, even if a guard stopped the run.
+
+    An interrupted run gets its page without the pictures: they take longer, and it may be continued.
 
     Raises:
         Undrawn: the run has finished, but the drawing of its pictures was interrupted.
@@ -188,17 +200,20 @@ def _execute(
         hurry = execute(recorder, watch, threads, listen, saver)
     except GuardStop:
         try:
-            _report(recorder)
+            _report(recorder, draw)
         except Undrawn as undrawn:
             LOGGER.warning("%s", undrawn)
         raise
-    _report(recorder, hurry)
+    except Interrupted:
+        _page(recorder, draw)
+        raise
+    _report(recorder, draw, hurry)
 
 
-def _report(recorder: Recorder, hurry: bool = False) -> None:
+def _report(recorder: Recorder, draw: bool, hurry: bool = False) -> None:
     """Draw the pictures. They can be drawn again later: a failure here must not make the run fail."""
     case, directory = recorder.simulation.case, recorder.directory
-    if not case.output.report or directory is None:
+    if not draw or not case.output.report or directory is None:
         return
     try:
         if hurry:
@@ -215,3 +230,18 @@ def _report(recorder: Recorder, hurry: bool = False) -> None:
         ) from None
     except Exception as error:
         LOGGER.warning("the report was not drawn: %s", reason(error), exc_info=True)
+
+
+def _page(recorder: Recorder, draw: bool) -> None:
+    """Write the page of an interrupted run; a second interrupt, or a failure, leaves it out."""
+    case, directory = recorder.simulation.case, recorder.directory
+    if not draw or not case.output.report or directory is None:
+        return
+    try:
+        from ..report.page import write_page
+
+        LOGGER.info("page: %s", write_page(directory.path))
+    except KeyboardInterrupt:
+        LOGGER.warning("the page was not written; write it with: mpmkit report %s", directory.path)
+    except Exception as error:
+        LOGGER.warning("the page was not written: %s", reason(error), exc_info=True)

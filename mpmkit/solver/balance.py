@@ -8,7 +8,7 @@ import numpy as np
 
 from ..kernels.sums import kinetics
 from .grid import Grid
-from .ledger import GRAVITY, IN, OUT, REDISTRIBUTION, REFINEMENT, START, WALLS
+from .ledger import FORCES, GRAVITY, IN, OUT, REDISTRIBUTION, REFINEMENT, START, WALLS
 from .particles import Particles
 from .stateful import State, plain_state, restore_plain
 
@@ -38,8 +38,8 @@ class EnergyBalance:
 
         created = (K + U) - start - in - out - W <= 0,
 
-    with K the kinetic energy, U the energy stored in shape and pressure, and W the work of gravity and of
-    moving walls plus the changes by refinement, see ``ledger.Ledger``.
+    with K the kinetic energy, U the energy stored in shape and pressure, and W the work of gravity, of
+    forces and of moving walls plus the changes by refinement, see ``ledger.Ledger``.
     Energy added by a redistribution, R, counts as created: a redistribution that adds more than the material
     dissipates stops the run like any other fault. R is recorded separately to name the cause;
     ``created - redistributed`` is the energy created by the rest of the scheme.
@@ -52,18 +52,19 @@ class EnergyBalance:
         most_excess: largest energy created so far, over the supply.
     """
 
-    def __init__(self, particles: Particles, grid: Grid, gravity: np.ndarray) -> None:
+    def __init__(self, particles: Particles, grid: Grid, strength: float) -> None:
+        """``strength``, m/s², of gravity and forces."""
         self._first = self._most_work = 0.0
         self.held = self.created = self.redistributed = 0.0
         self.solid = not any(group.law.uses_equation_of_state for group in particles.groups)
         self.most_excess = 0.0
         self._hard = False
         self._looks_too_high = 0
-        mass = float(np.sum(particles.mass))
         self._wave_speed = max(group.wave_speed for group in particles.groups)
-        falling = float(np.linalg.norm(gravity)) * grid.cell_size
+        falling = strength * grid.cell_size
         # Negligible: the energy of a fall by one cell or, without gravity, of rounding.
-        self._least = mass * (falling + ROUNDING * self._wave_speed**2)
+        self._negligible = falling + ROUNDING * self._wave_speed**2
+        self._least = float(np.sum(particles.mass)) * self._negligible
 
     def state(self) -> State:
         """All its numbers."""
@@ -76,8 +77,9 @@ class EnergyBalance:
     def update(self, p: Particles, energy: np.ndarray) -> None:
         """Record the energies by cause, J, of the present state."""
         self._first, self.redistributed = float(energy[START]), float(energy[REDISTRIBUTION])
+        self._least = max(self._least, float(np.sum(p.mass)) * self._negligible)
         self.held = float(energy.sum())
-        work = float(energy[[IN, GRAVITY, WALLS, REFINEMENT]].sum())
+        work = float(energy[[IN, GRAVITY, FORCES, WALLS, REFINEMENT]].sum())
         self._most_work = max(self._most_work, abs(work))
         self.created = self.held - self._first - work - float(energy[OUT])
         self.most_excess = max(self.most_excess, self.excess)
@@ -88,13 +90,13 @@ class EnergyBalance:
 
     @property
     def supply(self) -> float:
-        """Energy supplied to the scene, J: at the start, and by gravity up to its largest work."""
+        """Energy supplied to the scene, J: at the start, and as work, up to its largest value."""
         return self._first + self._most_work + self._least
 
     @property
     def excess(self) -> float:
         """Created energy, relative to the supplied energy."""
-        return self.created / self.supply
+        return self.created / self.supply if self.supply else 0.0  # nothing has come in yet
 
     @property
     def broken(self) -> bool:

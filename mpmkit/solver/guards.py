@@ -32,8 +32,8 @@ class Guards:
     """Checks a scene every few steps, and stops the run if its results can no longer be right.
 
     Attributes:
-        watches_energy: set it to False if something other than gravity does work, such as forces that a
-        program adds to the nodes. A law that adds energy declares it itself (``passive``).
+        watches_energy: set it to False if something does work that the ledger does not know, such as forces
+        that a program adds to the nodes. A law that adds energy declares it itself (``passive``).
         watches_density: set it to False to follow a flow beyond the point at which its density is wrong.
         density: the monitor of the density of the interior.
     """
@@ -73,7 +73,8 @@ class Guards:
 
     def _new_balance(self) -> EnergyBalance:
         s = self._scene
-        return EnergyBalance(s.particles, s.grid, s.case.gravity_vector)
+        strength = float(np.linalg.norm(s.case.gravity_vector)) + float(np.linalg.norm(s.case.largest_forces))
+        return EnergyBalance(s.particles, s.grid, strength)
 
     def check(self) -> None:
         """Raise GuardStop if the results of the run can no longer be right.

@@ -16,18 +16,20 @@ from ..kernels.gather import gather
 from ..kernels.scatter import scatter
 from ..registry import audit
 from .averager import Averager
+from .forces import Forces
 from .grid import Grid, Window
 from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .sources import Sources
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .touch import Touch
 from .walls import Faces, Walls
 
 WIDEST = 9
 """Doubles of the widest array of the particles, a tensor."""
-FILLED_ANEW = ("gravity", "base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
+FILLED_ANEW = ("base", "weight", "gradient", "hoop", "_tables", "_rate", "_no_rows")
 """Arrays made from the case, or filled by a step before it reads them; weights are saved separately."""
 
 
@@ -36,20 +38,22 @@ class SceneOperations:
 
     def __init__(self, case: Case, grid: Grid, particles: Particles) -> None:
         dim, scheme = grid.dim, case.scheme
-        gravity, radial = case.gravity_vector, case.space_.radial
+        radial = case.space_.radial
         self.scheme = scheme
         self.grid = grid
         self.cell_size = grid.cell_size
         self.particles = particles
-        self.gravity = gravity
         self.radial = radial
         self.window = Window(grid)
         self.acoustic_time = math.inf
         self.mean_speed = 0.0
         self.relaxation = Relaxation(scheme, radial)
+        self.forces = Forces(case, grid, particles)
         self.walls = Walls(case, grid, self.window, particles)
         self.faces = Faces(grid)
-        self.stage = Stage(scheme, grid, self.walls, particles, radial, gravity)
+        self.sources = Sources(case, grid, self.window, particles)
+        spacing = min(grid.cell_size / min(one.particles_along_axes(dim)) for one in case.filled)
+        self.stage = Stage(scheme, grid, self.walls, particles, radial, case.gravity_vector, spacing)
         support = scheme.shape.support
         self._scatter = scatter(dim, support)
         self._gather = gather(dim, support, scheme.velocity.affine)
@@ -104,8 +108,10 @@ class SceneOperations:
             "sorting": self.sorting,
             "relaxation": self.relaxation,
             "stage": self.stage,
+            "forces": self.forces,
             "walls": self.walls,
             "faces": self.faces,
+            "sources": self.sources,
         }
 
     def state(self) -> State:
@@ -121,12 +127,18 @@ class SceneOperations:
 
     # --- The frame of a step
 
+    @property
+    def time(self) -> float:
+        """Time at the start of the present step, s."""
+        return self.particles.time
+
     def begin(self, time: float = 0.0) -> int | None:
         """Sort if needed, move the walls to a time, s, evaluate the shape functions.
 
         Returns:
             Index of a particle that left the grid; None if there is none.
         """
+        self.particles.time = time
         lost = self._sort()
         if lost is None and self.stage.redistribute_if_due(self.window, self.sorting):
             lost = self._sort()
@@ -172,6 +184,8 @@ class SceneOperations:
     def step(self, dt: float) -> None:
         """One step of the chosen order."""
         self._account.begin()
+        self.forces.act(self.time, dt)
+        self.sources.begin(self.time, dt, self.sorting)
         try:
             self.scheme.order.step(self._for_order, dt)
         except PluginFault:  # wrong weights may be the real cause of the fault
@@ -211,9 +225,10 @@ class SceneOperations:
                 volume = p.volume * p.quadrature
         self._scatter(
             w.nodes, w.strides, w.lower, self.sorting.tasks, self.base, self.weight, self.gradient, self.hoop,
-            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure, self.gravity,
-            self.cell_size, momentum, forces,
+            p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure,
+            self.forces.acceleration, self.cell_size, momentum, forces,
         )  # fmt: skip
+        self.sources.map(momentum, forces, self.forces.acceleration)
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
@@ -232,19 +247,35 @@ class SceneOperations:
         if self.walls.touched:
             self.walls.constrain(self.faces.given(dt is not None), dt, self._rehearsing)
             self.faces.fill(self.window, self.sorting.active, dt)
+        self.sources.carry(dt)
 
     # --- Nodes
 
     @property
     def mapped_mass(self) -> float | None:
         """Mass mapped to the nodes in the last step, kg; None if there was no step since they were made."""
-        return float(self.window.nodes[:, 0].sum()) if self._stepped else None
+        if not self._stepped:
+            return None
+        return float(self.window.nodes[:, 0].sum()) - self.sources.mapped_mass
 
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
         given = self.faces.sums, self.faces.mapped
         nodes.solve_momentum(self.window.nodes, *self._faces(), *given, dt)
         self._walls_act(dt)
+        if self.forces:
+            self.forces.count(self._doubled_mean_velocity(dt), dt)
+
+    def _doubled_mean_velocity(self, dt: float) -> np.ndarray:
+        """2 Σ N (v - Δv/2), m/s, ``(n, dim)``: what a particle at rest takes with flip = -1."""
+        p, w = self.particles, self.window
+        found = np.zeros_like(p.velocity)
+        self._gather(
+            w.nodes, w.strides, w.lower, self.base, self.weight, self.gradient, self.hoop, self.cell_size,
+            0.0, -1.0, np.zeros_like(p.position), found, p.velocity_gradient, self._rate, p.affine, True,
+            False, False,
+        )  # fmt: skip
+        return found
 
     # --- Nodes to particles
 
@@ -260,7 +291,7 @@ class SceneOperations:
 
     def _moves(self) -> bool:
         """Whether a step moves any particle at all."""
-        return bool(self.gravity.any() or self.particles.velocity.any())
+        return bool(self.forces.acceleration.any() or self.particles.velocity.any())
 
     def _places(self) -> np.ndarray:
         """Positions of some of the particles, to detect whether they are moved."""
@@ -272,6 +303,7 @@ class SceneOperations:
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self.walls.taken_up(flip)
         self.faces.taken_up(1 - flip)
+        self.sources.taken_up(flip)
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 
@@ -299,9 +331,10 @@ class SceneOperations:
     def update_stress(self, dt: float) -> None:
         p = self.particles
         self._account.stressed(dt)
+        p.age += dt
         self._update_volumes(dt)
         self._follow_domains(dt)
-        for group in p.groups:
+        for group in p.present_groups:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
@@ -322,7 +355,7 @@ class SceneOperations:
         volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
-        for group in p.groups:
+        for group in p.present_groups:
             part = group.part
             if group.law.uses_equation_of_state:
                 volumes.assign(p.pressure[part], self._pressure(group, p.volume_ratio[part]))
@@ -348,7 +381,7 @@ class SceneOperations:
         if not self.scheme.redistribution.equal_boxes:
             self._follow_deformation(slice(0, len(p)), dt)
         elif not self._all_fluid:
-            for group in p.groups:
+            for group in p.present_groups:
                 if not group.law.uses_equation_of_state:
                     self._follow_deformation(group.part, dt)
         self.stage.follow(dt)

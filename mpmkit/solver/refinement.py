@@ -38,7 +38,7 @@ class Refiner:
         self.dim = grid.dim
         self._author = case.scheme.refinement
         self._grid, self._particles, self._radial = grid, particles, case.space_.radial
-        along_axes = [body.particles_along_axes(grid.dim) for body in case.bodies]
+        along_axes = [body.particles_along_axes(grid.dim) for body in case.filled]
         self._full = np.array([int(np.prod(counts)) for counts in along_axes])
         self.acts = refines(self._author)
 
@@ -55,6 +55,10 @@ class Refiner:
         return before != (p.numbers_given, len(p))
 
     # --- What there is
+
+    @property
+    def time(self) -> float:
+        return self._particles.time
 
     def sides(self) -> np.ndarray:
         return 2 * self._particles.box / self._grid.cell_size

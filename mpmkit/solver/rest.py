@@ -42,21 +42,21 @@ def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
     if weight is None:
         return False
     ratio = np.empty_like(weight)
-    for group in particles.groups:
-        found = _ratio_under(group, weight[group.part])
+    for group in particles.present_groups:
+        found = ratio_under(group, weight[group.part])
         if found is None:
             return False
         ratio[group.part] = found
     particles.volume_ratio[:] = ratio
     particles.volume[:] = ratio * particles.initial_volume
-    for group in particles.groups:
+    for group in particles.present_groups:
         particles.pressure[group.part] = group.pressure(ratio[group.part])
     return True
 
 
 def _vertical(case: Case, grid: Grid) -> int | None:
     """The axis along which gravity presses on a closed face, if all other axes are closed or periodic."""
-    gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
+    gravity = np.where(grid.periodic, 0.0, case.gravity_at_start)
     axes = np.flatnonzero(gravity)
     if len(axes) != 1:
         return None
@@ -69,7 +69,7 @@ def _vertical(case: Case, grid: Grid) -> int | None:
 def _weight_above(case: Case, grid: Grid, particles: Particles, axis: int) -> np.ndarray | None:
     """g Σ (mass above)/area at every particle, Pa; None if the bodies are not horizontal layers."""
     p, across = particles, [a for a in range(grid.dim) if a != axis]
-    pull = float(case.gravity_vector[axis])
+    pull = float(case.gravity_at_start[axis])
     slack = CLOSE * grid.cell_size
     height = p.position[:, axis] if pull < 0 else grid.extent[axis] - p.position[:, axis]
     area = np.prod([grid.extent[a] for a in across])
@@ -107,7 +107,7 @@ def swinging(case: Case, grid: Grid, particles: Particles) -> str | None:
     damps it at the rate 2/3 mu k²/rho. Solids are left out: their sound speed is physical, and they really
     oscillate.
     """
-    gravity = np.where(grid.periodic, 0.0, case.gravity_vector)
+    gravity = np.where(grid.periodic, 0.0, case.gravity_at_start)
     axis = int(np.argmax(np.abs(gravity)))
     if not gravity[axis] or grid.faces[axis, 0 if gravity[axis] < 0 else 1] == OPEN:
         return None
@@ -150,7 +150,7 @@ def _height_on_floor(grid: Grid, p: Particles, group: Group, axis: int, upwards:
     return tallest
 
 
-def _ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
+def ratio_under(group: Group, weight: np.ndarray) -> np.ndarray | None:
     """J at which p J equals a given weight, by bisection; None if there is no such J."""
     low, high = np.full(len(weight), LEAST_RATIO), np.ones(len(weight))
     if not (group.pressure(low) * low >= weight).all():

@@ -10,12 +10,14 @@ from ..case.model import Case
 from ..case.plugins import plugins_of
 from ..kernels.environment import require_threads
 from ..kernels.sums import kinetics
+from ..registry.audit.forces import settles, shortest_period
 from ..registry.blame import blaming_plugins
+from .beginning import begin_with_fields
 from .diagnosed import diagnosed
 from .draining import Drains
 from .grid import Grid
 from .guards import Guards, stop
-from .ledger import REDISTRIBUTION, WALLS, Ledger, present
+from .ledger import FORCES, IN, REDISTRIBUTION, WALLS, Ledger, present
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
@@ -66,8 +68,10 @@ class Simulation:
         case = self.case
         self.grid = Grid.of(case)
         self.particles = make_particles(case) if particles is None else particles
-        self.starts_under_weight = particles is None and put_under_weight(case, self.grid, self.particles)
-        begins = particles is None and not self.starts_under_weight
+        pressed = particles is None and begin_with_fields(case, self.particles, self.grid.lower)
+        begins = particles is None and not pressed
+        self.starts_under_weight = begins and put_under_weight(case, self.grid, self.particles)
+        begins = begins and not self.starts_under_weight
         self.swinging = swinging(case, self.grid, self.particles) if begins else None
         """The warning about a pressure that oscillates about the hydrostatic pressure."""
         self.operations = SceneOperations(case, self.grid, self.particles)
@@ -124,10 +128,13 @@ class Simulation:
         p = self.particles
         mass, doubled, square = kinetics(p.mass, p.velocity)
         ahead = self.time + self._interval * getattr(self, "time_step", 0.0)
-        speed = max(math.sqrt(square), self.operations.walls.fastest(self.time, ahead))
+        driven = (self.operations.walls, self.operations.sources)
+        speed = max(math.sqrt(square), *(one.fastest(self.time, ahead) for one in driven))
         self.mach_number = mach_number(p, speed)
+        mass = mass or 1.0  # a scene may begin empty
         waves = [(group, p.wave_speed(group)) for group in p.groups]
-        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate)
+        periods = [shortest_period(force) for force in self.case.varying_forces.values()]
+        self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate, periods)
         self.time_step, self.limited_by = choose_step(self.case.scheme, self.limits, self.fraction)
         self.operations.acoustic_time = self.limits.acoustic
         self.operations.mean_speed = math.sqrt(doubled / mass)
@@ -186,6 +193,8 @@ class Simulation:
 
     def _advance(self, at_most: float) -> float:
         self.prepare()
+        if not len(self.particles):
+            return self._wait(min(self.time_step, at_most))
         try:
             lost = self.operations.begin(self.time)
         except Scattered as error:
@@ -197,9 +206,20 @@ class Simulation:
         dt = min(self.time_step, at_most)
         self.operations.step(dt)
         self.time += dt
+        self.particles.time = self.time
         self.steps += 1
         self.particle_steps += len(self.particles)
-        if self.drains.take_out(self.time):
+        came_in = self.operations.sources.bring_in(self.time, dt, self.ledger)
+        if self.drains.take_out(self.time) or came_in:
+            self._renew()
+        return dt
+
+    def _wait(self, dt: float) -> float:
+        """A step of an empty scene, in which something may come in."""
+        self.time += dt
+        self.particles.time = self.time
+        self.steps += 1
+        if self.operations.sources.bring_in(self.time, dt, self.ledger):
             self._renew()
         return dt
 
@@ -217,12 +237,14 @@ class Simulation:
 
     def _follow_flow(self) -> None:
         """Recompute the sound speeds that follow the flow."""
-        gravity, elapsed = self.case.gravity_vector, self._interval * self.time_step
-        follow_flow(self.particles, self.grid, gravity, self._first_sound_speeds, elapsed)
+        case, elapsed = self.case, self._interval * self.time_step
+        goes_on = self.operations.sources.goes_on(self.time)
+        driving = case.gravity_vector, case.largest_forces
+        follow_flow(self.particles, self.grid, *driving, self._first_sound_speeds, elapsed, goes_on)
 
     def _refine(self) -> None:
         """Let the refinement split and merge particles."""
-        if not self.refiner.acts:
+        if not self.refiner.acts or not len(self.particles):
             return
         p = self.particles
         before, height = present(p), self.ledger.height(p)
@@ -243,6 +265,8 @@ class Simulation:
             "time_step": self.time_step,
             "mach_number": self.mach_number,
         }
+        if self.case.sources:
+            found["mass_in"] = float(self.operations.sources.mass_in.sum())
         if self.case.sinks:
             found["mass_out"] = float(self.ledger.mass_out.sum())
         with self.blaming:
@@ -250,10 +274,13 @@ class Simulation:
 
     def account(self) -> np.ndarray:
         """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
-        dim, stage = self.grid.dim, self.operations.stage
+        dim, stage, sources = self.grid.dim, self.operations.stage, self.operations.sources
+        forces = self.operations.forces
         by_cause = {
+            FORCES: (forces.impulse.sum(axis=0), float(forces.work.sum())),
             WALLS: (self._impulse_of_walls(dim), self.walls_work),
             REDISTRIBUTION: (stage.momentum, stage.energy),
+            IN: (sources.impulse, sources.work),
         }
         return self.ledger.account(self.particles, self.time, by_cause)
 
@@ -282,6 +309,17 @@ class Simulation:
     def walls_work(self) -> float:
         """Work of moving walls on the material so far, J."""
         return self.operations.walls.work
+
+    @property
+    def settled(self) -> bool:
+        """Whether no force changes any more."""
+        with self.blaming:
+            return all(settles(force) <= self.time for force in self.case.varying_forces.values())
+
+    @property
+    def force_work(self) -> np.ndarray:
+        """Work of each force that is not constant on the material so far, J."""
+        return self.operations.forces.work
 
     @property
     def redistribution_energy(self) -> float:

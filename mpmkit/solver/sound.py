@@ -20,7 +20,13 @@ ROUNDING = 1e-14
 
 
 def follow_flow(
-    particles: Particles, grid: Grid, gravity: np.ndarray, first: list[float | None], elapsed: float
+    particles: Particles,
+    grid: Grid,
+    gravity: np.ndarray,
+    forces: np.ndarray,
+    first: list[float | None],
+    elapsed: float,
+    more_comes: bool = False,
 ) -> None:
     """Move c of every material that follows the flow towards √(2 e) / mach.
 
@@ -30,18 +36,24 @@ def follow_flow(
         particles: their sound speeds, volume ratios and pressures are changed.
         grid: tells which axes are periodic.
         gravity: ``(dim,)``, m/s².
+        forces: ``(dim,)``, m/s², upper bounds of what other forces are along each axis.
         first: c of each material at the start, m/s.
         elapsed: time since the last change, s.
+        more_comes: whether sources will bring in more; c is then at least that of the start, which knows
+            their speed and height.
     """
-    if all(group.mach is None for group in particles.groups):
+    if not len(particles) or all(group.mach is None for group in particles.groups):
         return
-    fastest = math.sqrt(2 * largest_energy(particles, grid, gravity))
-    length = float(np.ptp(particles.position, axis=0).max())
+    slowest = 1.0 if more_comes else SLOWEST
+    extent = np.ptp(particles.position, axis=0)
+    length = float(extent.max())
+    of_forces = float(forces @ np.where(grid.periodic, 0.0, extent))
+    fastest = math.sqrt(2 * (largest_energy(particles, grid, gravity) + of_forces))
     for group, at_start in zip(particles.groups, first, strict=True):
         if group.mach is not None and at_start is not None:
             speed = group.sound_speed
             assert speed is not None
-            wanted = max(fastest / group.mach, SLOWEST * at_start)
+            wanted = max(fastest / group.mach, slowest * at_start)
             most = math.exp(CHANGE * elapsed * speed / max(length, grid.cell_size))
             _change_sound(particles, group, min(max(wanted, speed / most), speed * most))
 
@@ -81,7 +93,7 @@ def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> flo
     downwards = np.where(grid.periodic, 0.0, gravity)
     potential, of_box = -particles.position @ downwards, particles.box @ np.abs(downwards)
     moving = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
-    for group in particles.groups:
+    for group in particles.present_groups:
         part = group.part
         stored = group.law.strain_energy(particles.kinematics(group), group.state, particles.stress[part])
         if group.law.uses_equation_of_state:

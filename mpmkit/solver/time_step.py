@@ -15,6 +15,9 @@ from .particles import Group
 VISCOUS_NUMBER = 0.375
 """Largest mu dt / (rho dx²): Bloch analysis of the explicit viscous term on hats, in any dimension."""
 
+PART_OF_PERIOD = 0.1
+"""Longest step as a part of the period of a force: with the default fraction of a half, 20 steps a period."""
+
 FROM_REST = 0.05
 """Part of the scene's rate √e/h that a flow from rest can reach before the next check of the limits."""
 
@@ -26,25 +29,37 @@ class Limits:
     acoustic: float
     viscous: float
     advective: float
+    forces: float = math.inf
 
     def as_dict(self) -> dict[str, float]:
-        return {"acoustic": self.acoustic, "viscous": self.viscous, "advective": self.advective}
+        return {
+            "acoustic": self.acoustic,
+            "viscous": self.viscous,
+            "advective": self.advective,
+            "forces": self.forces,
+        }
 
 
 def limits(
-    materials: Iterable[tuple[Group, float]], cell_size: float, largest_speed: float, rate: float
+    materials: Iterable[tuple[Group, float]],
+    cell_size: float,
+    largest_speed: float,
+    rate: float,
+    periods: Iterable[float] = (),
 ) -> Limits:
     """Critical steps of a scene.
 
     acoustic: dx / c, with the law's fastest wave in its present state (eq. 5 of Ferreira et al.);
     viscous: 0.375 rho dx² / mu, with the law's largest viscosity;
-    advective: dx / |v|.
+    advective: dx / |v|;
+    forces: a tenth of the shortest period of a force.
 
     Args:
         materials: each with the speed of its fastest wave, m/s.
         cell_size: dx, m.
         largest_speed: largest particle speed, m/s.
         rate: √e/h of the scene, 1/s, see ``contracts.scale``.
+        periods: shortest period of each force, s.
     """
     # The largest strain rate on the grid is the largest speed over one cell. A scene at rest will move, so
     # that a part of the rate of its possible fall is added.
@@ -59,7 +74,8 @@ def limits(
                 group.law, f"has a largest viscosity of {viscosity} Pa s; it must not be negative"
             )
         viscous = min(viscous, _quotient(VISCOUS_NUMBER * group.density * cell_size**2, viscosity))
-    return Limits(acoustic, viscous, _quotient(cell_size, largest_speed))
+    of_forces = PART_OF_PERIOD * min(periods, default=math.inf)
+    return Limits(acoustic, viscous, _quotient(cell_size, largest_speed), of_forces)
 
 
 def borne_by(scheme: Scheme) -> dict[str, float]:
@@ -73,6 +89,7 @@ def borne_by(scheme: Scheme) -> dict[str, float]:
         "acoustic": min(_fraction(order, "acoustic_fraction"), _fraction(velocity, "acoustic_fraction")),
         "viscous": _fraction(order, "viscous_fraction"),
         "advective": 1.0,
+        "forces": 1.0,
     }
 
 

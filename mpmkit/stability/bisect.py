@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..case.model import Case
@@ -10,7 +11,7 @@ from ..errors import MpmkitError, PluginStop
 from ..solver.simulation import Simulation
 from ..solver.time_step import borne_by
 from .judge import Criteria
-from .trial import trace
+from .trial import Trace, trace
 
 FINE = 0.05
 """Fraction of the fine solution; also the smallest fraction that is tried."""
@@ -36,8 +37,19 @@ class Critical:
     """largest stable fraction that the schemes declare"""
 
 
-def critical_fraction(case: Case, criteria: Criteria | None = None, largest: float = LARGEST) -> Critical:
+def critical_fraction(
+    case: Case,
+    criteria: Criteria | None = None,
+    largest: float = LARGEST,
+    keep: Callable[[float, Trace], None] = lambda fraction, trial: None,
+) -> Critical:
     """Bisect the time step of a case between ``FINE`` and ``largest`` of its limit.
+
+    Args:
+        case: the case.
+        criteria: of an unstable run.
+        largest: largest fraction that is tried.
+        keep: called with the fraction and the records of each trial.
 
     Raises:
         CaseError: the case cannot be run.
@@ -48,13 +60,16 @@ def critical_fraction(case: Case, criteria: Criteria | None = None, largest: flo
     limit = simulation.limited_by
     declared = borne_by(case.scheme)[limit]
     fine = trace(case, FINE)
+    keep(FINE, fine)
     if fine.stopped_by is not None:
         return Critical(0.0, FINE, "guard", limit, declared)
     low, high, broken = FINE, math.inf, ""
     tried = largest
     while high / low > CLOSE:
         try:
-            found = criteria.broken(case, trace(case, tried), fine)
+            trial = trace(case, tried)
+            keep(tried, trial)
+            found = criteria.broken(case, trial, fine)
         except PluginStop:
             raise
         except MpmkitError:

@@ -39,10 +39,16 @@ class Criteria:
 
 def distance(found: Trace, fine: Trace) -> float:
     """Largest RMS distance between two runs, relative to the largest displacement."""
-    weight = fine.mass / fine.mass.sum()
-    apart = np.sqrt(((found.position - fine.position) ** 2).sum(axis=2) @ weight)
+    apart, weight = distances(found, fine), fine.mass / fine.mass.sum()
     moved = np.sqrt(((fine.position - fine.position[0]) ** 2).sum(axis=2) @ weight)
     return float(apart.max() / moved.max()) if moved.max() > 0 else float(apart.max() > 0)
+
+
+def distances(found: Trace, fine: Trace) -> np.ndarray:
+    """RMS distance, m, between two runs at the rows that both have."""
+    rows = min(len(found.position), len(fine.position))
+    squared = ((found.position[:rows] - fine.position[:rows]) ** 2).sum(axis=2)
+    return np.sqrt(squared @ (fine.mass / fine.mass.sum()))
 
 
 def _created(fine: Trace) -> float:
@@ -52,8 +58,10 @@ def _created(fine: Trace) -> float:
 
 def _isolated(case: Case) -> bool:
     """Whether gravity is the only external force on the body."""
-    return case.space != "axisymmetric" and all(
-        case.grid.faces.get(face, "open") in ("open", "periodic") for face in case.space_.faces
+    return (
+        case.space != "axisymmetric"
+        and not case.varying_forces
+        and all(case.grid.faces.get(face, "open") in ("open", "periodic") for face in case.space_.faces)
     )
 
 

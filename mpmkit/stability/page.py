@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from ..report.page.assembled import assembled
 from ..report.page.section import Section, note, paragraph, table
 from ..version import __version__
 from .figure import WRONG
+from .trials import Trials, section
 
 NAME = "index.html"
 LEAST, MOST = 0.04, 2.6
@@ -21,7 +23,9 @@ ROW, BAR = 30, 12
 WIDTH = 560
 
 
-def write_page(rows: list[dict], kinds: list[str], title: str, directory: Path) -> Path:
+def write_page(
+    rows: list[dict], kinds: list[str], title: str, directory: Path, trials: Sequence[Trials] = ()
+) -> Path:
     """Write the page of a map into a directory, which is made.
 
     Args:
@@ -29,16 +33,21 @@ def write_page(rows: list[dict], kinds: list[str], title: str, directory: Path) 
         kinds: of plug-ins that are varied.
         title: of the case.
         directory: of the map.
+        trials: those at the limit of each combination, in the order of the rows; none are shown by default.
 
     Raises:
         OutputError: where it cannot be written.
     """
     path = directory / NAME
+    names = [name_of(row, kinds, title) for row in rows]
+    sections = [_map(rows, kinds, title), _table(rows, kinds, title)]
+    if trials and (shown := section(rows, names, trials)) is not None:
+        sections.append(shown)
     page = assembled(
         f"{title}: largest stable step",
         "The largest time step up to which each combination of schemes creates no energy and no momentum, "
         "and gives the result of a fine solution.",
-        [_map(rows, kinds, title), _table(rows, kinds, title)],
+        sections,
         f"Made by mpmkit {__version__}. It needs no network.",
     )
     try:

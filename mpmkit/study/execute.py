@@ -10,7 +10,7 @@ from ..errors import MpmkitError, reason
 from .members import Member
 from .processes import cores, processes
 from .store import Store
-from .work import FAILED, Outcome, run_member
+from .work import FAILED, Outcome, PageOf, run_member
 
 MOST_NAMED = 5
 """Most members that a sentence names."""
@@ -33,6 +33,7 @@ def execute(
     executor: Executor | None = None,
     workers: int | None = None,
     listen: Listener | None = None,
+    page: str | None = None,
 ) -> None:
     """Run all members without a result; a member that fails does not stop the others.
 
@@ -43,6 +44,8 @@ def execute(
         executor: runs them; default: processes of this machine.
         workers: how many at once on this machine; default: as many as its cores hold of ``threads``.
         listen: called for each member that has ended.
+        page: file name of the page of the study, to which the page of each member links; None if the members
+            shall have no pages.
 
     Raises:
         KeyboardInterrupt: results of finished members are kept.
@@ -67,7 +70,7 @@ def execute(
             else nullcontext(executor)
         )
         with pool as at_work:
-            broken, given_up = _run(at_work, {number: left[number] for number in lost}, threads, done)
+            broken, given_up = _run(at_work, {number: left[number] for number in lost}, threads, page, done)
         if given_up:
             titles = [left[number].title for number in sorted(given_up)]
             raise Unfinished(
@@ -86,7 +89,11 @@ def named(titles: list[str], total: int) -> str:
 
 
 def _run(
-    pool: Executor, members: dict[int, Member], threads: int, done: Callable[[int, Outcome], None]
+    pool: Executor,
+    members: dict[int, Member],
+    threads: int,
+    page: str | None,
+    done: Callable[[int, Outcome], None],
 ) -> tuple[list[int], list[int]]:
     """Run members in a pool; return members whose workers died, and members that the pool gave up."""
     futures: dict[Future, int] = {}
@@ -94,7 +101,8 @@ def _run(
     try:
         for number, member in members.items():
             try:
-                futures[pool.submit(run_member, member.data, threads)] = number
+                wanted = None if page is None else PageOf(member.heading, f"../../{page}")
+                futures[pool.submit(run_member, member.data, threads, wanted)] = number
             except BrokenExecutor:  # while members were still being submitted
                 broken.append(number)
         for future in as_completed(futures):

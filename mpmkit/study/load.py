@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from ..case.load import count_from, name_from, read_json
-from ..case.messages import explain
-from ..errors import CaseError
-from ..registry import installed
+from ..case.load import count_from, name_from, read_json, validated
 from .model import Study
 
 
@@ -33,12 +27,4 @@ def load_study(path: str | Path) -> Study:
 
 def parse_study(data: Any, source: str = "study") -> Study:
     """Validate a study given as the content of a JSON file; see ``load_study``."""
-    if not isinstance(data, dict):
-        raise CaseError(f"{source}: a study must be a JSON object")
-    data = {key: value for key, value in data.items() if key != "$schema"}
-    try:
-        return Study.model_validate_json(json.dumps(data, allow_nan=False))
-    except ValidationError as error:
-        raise CaseError(f"{source}: {explain(error, data, Study, installed(), 'study')}") from None
-    except (TypeError, ValueError, RecursionError) as error:
-        raise CaseError(f"{source}: {error}") from None
+    return validated(Study, data, source, "study")

@@ -42,11 +42,20 @@ class Member:
     case: Case
     remarks: list[str] = field(default_factory=list)
     """changes of the case that the study did not ask for explicitly"""
+    name: str = ""
+    """title of its page; default: its place along the dimensions"""
 
     @property
     def title(self) -> str:
         """Its name in figures and messages."""
         return ", ".join(shown(label) for label in self.labels.values())
+
+    @property
+    def heading(self) -> str:
+        """The title of its page."""
+        if self.name or list(self.labels) == [MEMBER]:
+            return self.name or self.title
+        return ", ".join(f"{dimension} = {shown(label)}" for dimension, label in self.labels.items())
 
     @property
     def slug(self) -> str:

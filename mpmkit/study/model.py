@@ -45,6 +45,9 @@ class Study(Model):
         default={}, description="a list instead of a grid: the changes of each member, by name"
     )
     threads: int = Field(default=1, ge=1, description="threads of each member")
+    pages: bool = Field(
+        default=True, description="whether each member keeps a page, as a run does, of at most 1 MB"
+    )
 
     @model_validator(mode="after")
     def _varies_something(self) -> Study:

@@ -133,7 +133,7 @@ def _histories(dataset: xarray.Dataset) -> Section | None:
 
 
 def _table(dataset: xarray.Dataset, directory: Path) -> Section:
-    """A row for each member, with a link to its directory."""
+    """A row for each member, with a link to its page."""
     places = _directories(directory)
     dimensions = [str(name) for name in dataset.fate.dims]
     headings = [*dimensions, *(heading for _, heading, _, _ in COLUMNS), "how it ended"]
@@ -158,7 +158,7 @@ def _table(dataset: xarray.Dataset, directory: Path) -> Section:
 
 
 def _directories(directory: Path) -> dict[tuple[str, ...], str]:
-    """Directories of the members, relative to the study's directory, by their labels."""
+    """Pages of the members, or their directories if they have none, relative to the study's directory."""
     from .members import shown
 
     found = {}
@@ -167,7 +167,8 @@ def _directories(directory: Path) -> dict[tuple[str, ...], str]:
             labels = json.loads(path.read_text(encoding="utf-8"))["labels"]
         except (OSError, ValueError, KeyError):
             continue
-        found[tuple(shown(label) for label in labels.values())] = f"members/{path.parent.name}/"
+        page = NAME if (path.parent / NAME).exists() else ""
+        found[tuple(shown(label) for label in labels.values())] = f"members/{path.parent.name}/{page}"
     return found
 
 

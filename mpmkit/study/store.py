@@ -25,6 +25,8 @@ from .work import FAILED, Outcome
 
 DRAWN = ("table.md", "histories.png", "differences.png", "chart.png", "index.html")
 """Files made from all members together, besides ``results.nc``."""
+PAGE = "index.html"
+"""Page of a member, in its directory."""
 KINDS = {"labels": dict, "fate": str, "sentence": str, "summary": dict, "cost": dict}
 """Keys of every ``member.json``."""
 
@@ -110,7 +112,7 @@ class Store:
         """Delete the files of these members and the files made from all members; nothing else."""
         try:
             for directory in directories:
-                for name in ("member.json", "history.nc", "case.json"):
+                for name in ("member.json", "history.nc", "case.json", PAGE):
                     (directory / name).unlink(missing_ok=True)
                 with suppress(OSError):  # it contains a file of the user
                     directory.rmdir()
@@ -132,14 +134,28 @@ class Store:
         with replacing(directory / "history.nc") as partial:
             partial.write_bytes(outcome.history)
         write_json(directory / "case.json", member.data)
+        self._keep_page(directory / PAGE, outcome.page)
         record = asdict(outcome)
         record.pop("history")
+        record.pop("page")
         digests = {
             "digest": member.digest,
             "case_digest": member.case_digest,
             "history_digest": _digest(outcome.history),
         }
         write_json(directory / "member.json", {"labels": member.labels, **digests, **record})
+
+    @staticmethod
+    def _keep_page(path: Path, content: bytes) -> None:
+        """Write the page of a member; without one, that of an earlier run must not stay."""
+        try:
+            if not content:
+                path.unlink(missing_ok=True)
+                return
+        except OSError as error:
+            raise cannot_write(path, error) from error
+        with replacing(path) as partial:
+            partial.write_bytes(content)
 
     def outcome(self, member: Member) -> dict[str, Any] | None:
         """The stored result of a member with the same case and versions; None if there is none.
@@ -193,6 +209,11 @@ class Store:
         """Its history; None if there is none."""
         path = self._history(member)
         return path if path.exists() and path.stat().st_size else None
+
+    def page(self, member: Member) -> Path | None:
+        """Its page; None if there is none."""
+        path = self.directory(member) / PAGE
+        return path if path.exists() else None
 
     def _history(self, member: Member) -> Path:
         return self.directory(member) / "history.nc"

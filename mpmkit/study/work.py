@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import tempfile
 import threading
 import time as clock
@@ -16,6 +17,9 @@ from ..errors import GuardStop, reason
 
 FAILED = "failed"
 """Fate of a member that could not be run, or that ended with an unexpected error."""
+MOST_BYTES = 1_000_000
+"""Largest size of the page of a member."""
+LOGGER = logging.getLogger("mpmkit")
 MOMENT = 1e-9
 """Part of the run time of the warm-up run, which takes one step to load all code."""
 TURN = threading.Lock()
@@ -36,18 +40,30 @@ class Outcome:
     """wall_seconds, cpu_seconds, steps, particle_steps, memory_bytes"""
     history: bytes
     """bytes of ``history.nc``; empty if there is none"""
+    page: bytes = b""
+    """bytes of the page of the run; empty if none was asked for, or made"""
 
 
-def run_member(data: dict[str, Any], threads: int) -> Outcome:
+@dataclass(frozen=True)
+class PageOf:
+    """The page that a member is to have."""
+
+    title: str
+    above: str
+    """address of the page of the study, relative to that of the member"""
+
+
+def run_member(data: dict[str, Any], threads: int, page: PageOf | None = None) -> Outcome:
     """Run a case and return its result; no file stays on the machine that ran it.
 
-    The seconds are those of the run itself: kernels are loaded, or compiled, before the clock starts.
+    The seconds are those of the run itself: kernels are loaded, or compiled, before the clock starts, and the
+    page is made after it has stopped.
     """
     with TURN, np.errstate(all="ignore"):  # a guard reports a diverging run
-        return _run(data, threads)
+        return _run(data, threads, page)
 
 
-def _run(data: dict[str, Any], threads: int) -> Outcome:
+def _run(data: dict[str, Any], threads: int, page: PageOf | None) -> Outcome:
     import json
 
     from ..case import parse_case
@@ -56,7 +72,8 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
     from ..solver.memory import expected_bytes, require_memory
 
     try:
-        case = parse_case(data, ["output.report=false", f"output.frame_interval={latest(data['until'])!r}"])
+        keeps = f"output.report={'false' if page is None else 'true'}"
+        case = parse_case(data, [keeps, f"output.frame_interval={latest(data['until'])!r}"])
         require_memory(case)
     except Exception as error:
         return Outcome(FAILED, reason(error), {}, {}, b"")
@@ -64,11 +81,11 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
     with tempfile.TemporaryDirectory() as place:
         with suppress(Exception):  # the run meets the error again and reports it
             moment = case.model_copy(update={"until": MOMENT * case.end})
-            run(moment, Path(place) / "moment", threads=threads)
+            run(moment, Path(place) / "moment", threads=threads, draw=False)
         out = Path(place) / "run"
         wall, cpu = clock.perf_counter(), clock.process_time()
         try:
-            run(case, out, threads=threads)
+            run(case, out, threads=threads, draw=False)
         except GuardStop as stop:
             fate, sentence = stop.guard, reason(stop)
         except Exception as error:
@@ -76,6 +93,7 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
         wall, cpu = clock.perf_counter() - wall, clock.process_time() - cpu
         summary = json.loads(_text(out / "summary.json") or "{}")
         history = (out / "history.nc").read_bytes() if (out / "history.nc").exists() else b""
+        shown = b"" if page is None else _page(out, page)
     particles = summary.get("particles") or 0
     rate, solving = summary.get("particle_steps_per_second"), summary.get("wall_time")
     cost = {
@@ -85,7 +103,18 @@ def _run(data: dict[str, Any], threads: int) -> Outcome:
         "particle_steps": rate * solving if rate and solving else 0.0,
         "memory_bytes": float(expected_bytes(case, particles)),
     }
-    return Outcome(fate, sentence, summary, cost, history)
+    return Outcome(fate, sentence, summary, cost, history, shown)
+
+
+def _page(directory: Path, wanted: PageOf) -> bytes:
+    """The page of a member; empty if it cannot be made, which must not lose the result of the run."""
+    from ..report.page import page_of
+
+    try:
+        return page_of(directory, title=wanted.title, above=wanted.above, most=MOST_BYTES).encode()
+    except Exception as error:
+        LOGGER.warning("the page of '%s' was not made: %s", wanted.title, reason(error), exc_info=True)
+        return b""
 
 
 def _text(path: Path) -> str:

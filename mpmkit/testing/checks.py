@@ -8,10 +8,12 @@ from functools import partial
 from typing import Any
 
 from ..contracts import (
+    BodyForce,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     Operations,
     ParticleField,
     Plugin,
@@ -19,6 +21,7 @@ from ..contracts import (
     Refinement,
     ShapeFunction,
     Sink,
+    Source,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -26,10 +29,12 @@ from ..contracts import (
 )
 from ..errors import GuardStop, PluginFault
 from . import (
+    body_forces,
     contacts,
     elastic,
     equations_of_state,
     flight,
+    initial_fields,
     law_promises,
     laws,
     measured,
@@ -38,6 +43,7 @@ from . import (
     refinement,
     shapes,
     sinks,
+    sources,
     surfaces,
     volumetric,
 )
@@ -122,7 +128,17 @@ ON_CONTACTS = (
     contacts.galilei,
     contacts.batch_order,
 )
+ON_BODY_FORCES = (
+    body_forces.arrays,
+    body_forces.batch_order,
+    body_forces.declares,
+    body_forces.mean,
+    body_forces.largest,
+    body_forces.settles,
+)
+ON_INITIAL_FIELDS = (initial_fields.arrays, initial_fields.batch_order)
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
+ON_SOURCES = (sources.pushes, sources.fastest, sources.remembers_nothing)
 ON_DIAGNOSTICS = (
     measured.declares,
     measured.numbers,
@@ -234,6 +250,29 @@ def contact_checks(contact: Contact) -> list[Check]:
     return _of("contact", contact, [(check.__name__, partial(check, contact)) for check in ON_CONTACTS])
 
 
+def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
+    """What every body force must do, in each space that can have it; see ``body_force_tests``."""
+    homes = body_forces.at_home(force)
+    return _of(
+        "body_force",
+        force,
+        [
+            ("home", partial(body_forces.home, force)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, force, space, size))
+                for check in ON_BODY_FORCES
+                for space in homes
+            ),
+        ],
+    )
+
+
+def initial_field_checks(field: InitialField, *, size: float = 1.0) -> list[Check]:
+    """What every initial field must do, in each space and for each field that it can give."""
+    checks = [(check.__name__, partial(check, field, size)) for check in ON_INITIAL_FIELDS]
+    return _of("initial_field", field, [("home", partial(initial_fields.home, field)), *checks])
+
+
 def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
     """What every sink must do, in each space that can have it; see ``sink_tests``."""
     homes = sinks.at_home(sink)
@@ -247,6 +286,20 @@ def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
                 for check in ON_SINKS
                 for space in homes
             ),
+        ],
+    )
+
+
+def source_checks(source: Source, *, size: float = 1.0) -> list[Check]:
+    """What every source must do, and its mouth in each space that can have it; see ``source_tests``."""
+    homes = sources.at_home(source, size)
+    return _of(
+        "source",
+        source,
+        [
+            ("home", partial(sources.home, source, size)),
+            *((f"mouth {space.name}", partial(sources.mouth, source, space, size)) for space in homes),
+            *((check.__name__, partial(check, source)) for check in ON_SOURCES),
         ],
     )
 

@@ -161,10 +161,10 @@ def batch_order(contact: Contact) -> None:
     """Nodes do not know each other, nor the calls before: in another order each gets the same, to the bit."""
     order = np.random.default_rng(2).permutation(K)
     for nodes, dt, what in situations(contact):
-        arrays_ = {name: array[order] for name, array in vars(nodes).items() if name != "memory"}
+        arrays_ = {n: array[order] for n, array in vars(nodes).items() if isinstance(array, np.ndarray)}
         memory = {name: array[order] for name, array in nodes.memory.items()}
         after = acted(contact, nodes, dt)
-        found = acted(contact, ContactNodes(**arrays_, memory=memory), dt)
+        found = acted(contact, ContactNodes(**arrays_, memory=memory, time=nodes.time), dt)
         for name, array in {"velocity": found.velocity, **found.memory}.items():
             expected = after.velocity if name == "velocity" else after.memory[name]
             require_same(

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..contracts import (
+    BodyForce,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
     EquationOfState,
+    InitialField,
     ParticleField,
     Redistribution,
     Refinement,
     ShapeFunction,
     Sink,
+    Source,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -21,9 +24,11 @@ from ..contracts import (
 )
 from .checks import (
     Check,
+    body_force_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
+    initial_field_checks,
     law_checks,
     order_checks,
     particle_field_checks,
@@ -31,6 +36,7 @@ from .checks import (
     refinement_checks,
     shape_checks,
     sink_checks,
+    source_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -156,6 +162,28 @@ def contact_tests(contact: Contact) -> Test:
     return _tests(contact_checks(contact))
 
 
+def body_force_tests(force: BodyForce, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a body force, in each space that can have it.
+
+    An acceleration for each place, and a mean, a bound and a time of rest that fit it.
+
+    Args:
+        force: with parameters; it must act within the first 5 s.
+        size: m; places reach so far from the origin along each axis.
+    """
+    return _tests(body_force_checks(force, size=size))
+
+
+def initial_field_tests(field: InitialField, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for an initial field.
+
+    Args:
+        field: with parameters.
+        size: m; places reach so far from the origin along each axis.
+    """
+    return _tests(initial_field_checks(field, size=size))
+
+
 def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
     """A test function, as that of ``law_tests``, for a sink, in each space that can have it.
 
@@ -166,6 +194,19 @@ def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
         size: m; the grid reaches so far from the origin along each axis, and places half as far again.
     """
     return _tests(sink_checks(sink, size=size))
+
+
+def source_tests(source: Source, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a source, with its mouth in each space that can have it.
+
+    Its column never moves back, is no faster than it says, and is where it is at a time whatever it was asked
+    before.
+
+    Args:
+        source: with parameters.
+        size: m; the grid reaches so far from the origin along each axis.
+    """
+    return _tests(source_checks(source, size=size))
 
 
 def diagnostic_tests(diagnostic: Diagnostic) -> Test:

@@ -59,7 +59,7 @@ def disorder(simulation: Simulation, amount: float = 0.2) -> None:
 def redistribute(simulation: Simulation) -> None:
     """Let the redistribution do what is due for ``TIME`` seconds, if it ever does anything."""
     operations = simulation.operations
-    operations.stage.shear, operations.stage.time = LARGE, TIME
+    operations.stage.shear, operations.stage.elapsed = LARGE, TIME
     operations.stage.redistribute_if_due(operations.window, operations.sorting)
     lost = operations.begin()
     require(lost is None, "a particle was moved out of the grid")

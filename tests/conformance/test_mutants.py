@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import body_force_mutants
 import contact_mutants
 import diagnostic_mutants
 import equation_of_state_mutants
+import initial_field_mutants
 import law_mutants
 import numpy as np
 import order_mutants
@@ -14,6 +16,7 @@ import redistribution_mutants
 import refinement_mutants
 import shape_mutants
 import sink_mutants
+import source_mutants
 import surface_mutants
 import velocity_mutants
 import volumetric_mutants
@@ -22,9 +25,11 @@ from sound_laws import Ageing, NeoHooke, Oil, Plastic, Spring
 from mpmkit.registry import installed
 from mpmkit.testing import (
     Violation,
+    body_force_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
+    initial_field_checks,
     law_checks,
     law_tests,
     order_checks,
@@ -33,6 +38,7 @@ from mpmkit.testing import (
     refinement_checks,
     shape_checks,
     sink_checks,
+    source_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -191,11 +197,14 @@ CHECKS = {
     "equation_of_state": equation_of_state_checks,
     "surface": surface_checks,
     "contact": contact_checks,
+    "body_force": body_force_checks,
+    "initial_field": initial_field_checks,
     "sink": sink_checks,
+    "source": source_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "sink", "diagnostic")
+NEED_PARAMETERS = ("surface", "contact", "body_force", "initial_field", "sink", "source", "diagnostic")
 """Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
@@ -274,6 +283,26 @@ OTHER_MUTANTS = [
     ("contact", contact_mutants.HiddenMemory, "batch order"),
     ("contact", contact_mutants.NoParity, "declares"),
     ("contact", contact_mutants.Rows, "descriptor"),
+    ("body_force", body_force_mutants.Nowhere, "home"),
+    ("body_force", body_force_mutants.SaysNothing, "home"),
+    ("body_force", body_force_mutants.OneForAll, "arrays plane-strain"),
+    ("body_force", body_force_mutants.Infinite, "arrays 3d"),
+    ("body_force", body_force_mutants.Moves, "arrays axisymmetric"),
+    ("body_force", body_force_mutants.Nothing, "arrays plane-strain"),
+    ("body_force", body_force_mutants.KnowsTheOthers, "batch order 3d"),
+    ("body_force", body_force_mutants.Varies, "declares plane-strain"),
+    ("body_force", body_force_mutants.Drags, "declares 3d"),
+    ("body_force", body_force_mutants.Changes, "declares axisymmetric"),
+    ("body_force", body_force_mutants.Double, "mean plane-strain"),
+    ("body_force", body_force_mutants.Weaker, "largest 3d"),
+    ("body_force", body_force_mutants.Restless, "settles plane-strain"),
+    ("body_force", body_force_mutants.NoPeriod, "settles 3d"),
+    ("initial_field", initial_field_mutants.Nowhere, "home"),
+    ("initial_field", initial_field_mutants.SaysNothing, "home"),
+    ("initial_field", initial_field_mutants.OneForAll, "arrays"),
+    ("initial_field", initial_field_mutants.NoNumber, "arrays"),
+    ("initial_field", initial_field_mutants.Moves, "arrays"),
+    ("initial_field", initial_field_mutants.KnowsTheOthers, "batch order"),
     ("sink", sink_mutants.Nowhere, "home"),
     ("sink", sink_mutants.SaysNothing, "home"),
     ("sink", sink_mutants.Rows, "takes something plane-strain"),
@@ -282,6 +311,21 @@ OTHER_MUTANTS = [
     ("sink", sink_mutants.Everything, "takes something axisymmetric"),
     ("sink", sink_mutants.Lowest, "batch order plane-strain"),
     ("sink", sink_mutants.Pulls, "batch order plane-strain"),
+    ("source", source_mutants.Nowhere, "home"),
+    ("source", source_mutants.SaysNothing, "home"),
+    ("source", source_mutants.NoMouth, "mouth 3d"),
+    ("source", source_mutants.Thick, "mouth plane-strain"),
+    ("source", source_mutants.Sideways, "mouth axisymmetric"),
+    ("source", source_mutants.Unsigned, "mouth 3d"),
+    ("source", source_mutants.Sucks, "pushes"),
+    ("source", source_mutants.Idle, "pushes"),
+    ("source", source_mutants.TooEarly, "pushes"),
+    ("source", source_mutants.Endless, "pushes"),
+    ("source", source_mutants.EndsFirst, "pushes"),
+    ("source", source_mutants.AText, "pushes"),
+    ("source", source_mutants.Slower, "fastest"),
+    ("source", source_mutants.Runs, "fastest"),
+    ("source", source_mutants.Counts, "remembers nothing"),
     ("diagnostic", diagnostic_mutants.Nowhere, "home"),
     ("diagnostic", diagnostic_mutants.SaysNothing, "home"),
     ("diagnostic", diagnostic_mutants.NoUnit, "declares plane-strain"),
@@ -315,7 +359,10 @@ OTHER_MUTANTS = [
         ("equation_of_state", equation_of_state_mutants.InLogarithm),
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
+        ("body_force", body_force_mutants.Pulse),
+        ("initial_field", initial_field_mutants.Rising),
         ("sink", sink_mutants.Below),
+        ("source", source_mutants.Tap),
         ("diagnostic", diagnostic_mutants.Fastest),
         ("particle_field", particle_field_mutants.Momentum),
     ],

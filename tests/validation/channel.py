@@ -187,7 +187,7 @@ class Channel:
         self.simulation.choose_time_step()
 
     def set_drive(self, drive: float) -> None:
-        self.simulation.operations.gravity[0] = drive / self.fluid.density
+        self.simulation.operations.forces.acceleration[0, 0] = drive / self.fluid.density
 
     def run(self, seconds: float) -> None:
         end = self.simulation.time + seconds

@@ -2,6 +2,7 @@
 
 from .ball import Ball
 from .brick import Brick, BrickShell
+from .extruded import Extruded
 from .revolved import Revolved
 from .section import Section, trapezium, trapezium_plates, trapezium_shell
 from .solid import HalfSpace, Inverted, Jointed, Shell, Solid
@@ -10,6 +11,7 @@ __all__ = [
     "Ball",
     "Brick",
     "BrickShell",
+    "Extruded",
     "HalfSpace",
     "Inverted",
     "Jointed",

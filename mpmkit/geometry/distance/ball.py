@@ -1,4 +1,4 @@
-"""The distance of a ball, or of a disc."""
+"""The distance of a ball, or of a disc, which may be hollow."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from .solid import Found, Solid
 
 @dataclass(frozen=True)
 class Ball(Solid):
-    """φ = |x - centre| - radius, m."""
+    """φ = max(|x - centre| - radius, inner - |x - centre|), m."""
 
     centre: np.ndarray
     radius: float
+    inner: float = 0.0
 
     def distance(self, x: np.ndarray) -> Found:
         offset, length = unit(x - self.centre)
-        return length - self.radius, offset
+        beyond, within = length - self.radius, self.inner - length
+        from_within = (within > beyond) & (self.inner > 0)
+        return np.where(from_within, within, beyond), np.where(from_within[:, None], -offset, offset)
 
     def hull(self) -> tuple[np.ndarray, float]:
         return self.centre[None], self.radius

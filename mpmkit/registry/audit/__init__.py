@@ -12,6 +12,7 @@ nobody may write to. An order and a velocity update get no arrays: what they ask
 A rehearsal cannot see what only happens to other particles or in other steps, nor writes beyond the bands.
 """
 
+from . import forces
 from .account import Account, is_finite
 from .equations_of_state import rehearse_equation_of_state
 from .fences import SAMPLE
@@ -45,6 +46,7 @@ __all__ = [
     "Rehearsed",
     "call_contact",
     "described",
+    "forces",
     "is_finite",
     "particle_domain",
     "placed",

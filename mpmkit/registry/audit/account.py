@@ -1,4 +1,4 @@
-"""What an update order and a velocity update have asked for in a step, against what a step is."""
+"""The operations that an order and a velocity update have called in a step, against a complete step."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from ...contracts import UpdateOrder, VelocityUpdate
 from ...errors import PluginFault
 
 ROUNDING = 1e-9
-"""How far parts of a step may be from the whole, relative."""
+"""Largest relative difference between the sum of the parts and the whole step."""
 
 
 class Account:
-    """Counts the seconds of a step that each operation was asked for.
+    """Adds up the time, s, for which each operation of a step was called.
 
-    In any order of the operations, a step of ``dt`` moves the particles by the nodal velocity of the present
-    forces, and updates their stress with the velocity gradient, over ``dt`` seconds each, be it in parts.
+    Whatever the order of the operations, a step of ``dt`` moves the particles with the nodal velocity of the
+    present forces for ``dt`` seconds in total, and updates their stress with the velocity gradient for ``dt``
+    seconds in total, in one or several parts.
     """
 
     def __init__(self) -> None:
@@ -30,7 +31,7 @@ class Account:
         self._gradient = False
         self._unready: str | None = None
         self.advanced = 0.0
-        """s, that the velocity update has advanced the particles in its present call."""
+        """s, by which the velocity update has advanced the particles in its present call"""
 
     def mapped(self, forces: bool) -> None:
         """Particles were mapped to nodes that had been cleared."""
@@ -56,7 +57,7 @@ class Account:
             )
 
     def advances(self, dt: Any, graded: bool) -> None:
-        """The velocity update advances the particles, and where ``graded`` updates their gradient."""
+        """The velocity update advances the particles, and if ``graded`` updates their velocity gradient."""
         self.advanced += seconds(dt)
         self._gradient |= graded
 
@@ -71,7 +72,7 @@ class Account:
             self._unready = "updated the stress without the velocity gradient of the step"
 
     def require_moved(self, author: VelocityUpdate, dt: float, by_itself: bool) -> None:
-        """Raise PluginFault unless a velocity update advanced the particles by ``dt`` seconds.
+        """Raise PluginFault if a velocity update did not advance the particles by ``dt`` seconds.
 
         Args:
             by_itself: whether particles were moved, or may have been, without ``Operations.move_particles``.
@@ -82,7 +83,7 @@ class Account:
             )
 
     def require_whole(self, author: UpdateOrder, dt: float) -> None:
-        """Raise PluginFault unless an order advanced the scene by ``dt`` seconds in all."""
+        """Raise PluginFault if an order did not advance the scene by ``dt`` seconds in total."""
         if self._unready is not None:
             raise PluginFault(author, self._unready)
         for what, done in (("moved the particles", self._moved), ("updated the stress", self._stressed)):
@@ -91,10 +92,10 @@ class Account:
 
 
 def seconds(dt: Any) -> float:
-    """A length of time that a plug-in asked for.
+    """A duration that a plug-in gave, s.
 
     Raises:
-        PluginFault: it is no finite number; of the plug-in that asked.
+        PluginFault: it is not a finite number.
     """
     if not is_finite(dt):
         raise PluginFault(None, f"asked for a step of {dt!r} s; it must be a finite number")

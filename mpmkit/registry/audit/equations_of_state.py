@@ -1,4 +1,4 @@
-"""Equations of state: what they write, and whether their energy is the work of their pressure."""
+"""Equations of state: they must not change arguments, and their energy is the work of their pressure."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .fences import READ, Fenced, require_unchanged, sample
 from .returned import NOTHING, require_array, require_finite
 
 RATIOS = np.array([0.97, 0.99, 1.0, 1.01, 1.03])
-"""Volume ratios at which energy and pressure are compared: a fluid hardly changes its volume."""
+"""Volume ratios at which energy and work are compared: the volume of a fluid hardly changes."""
 PARTS = 32
-"""Parts of the integral of the pressure, each by its midpoint."""
+"""Number of intervals of the integral of the pressure (midpoint rule)."""
 APART = 0.05
-"""How far the energy may be from that integral, relative: a pressure with a kink is integrated less well."""
+"""Largest relative difference between energy and integral; a kink in the pressure needs some of it."""
 
 
 def rehearse_equation_of_state(
@@ -24,10 +24,10 @@ def rehearse_equation_of_state(
     sound_speed: float,
     numbers: np.ndarray,
 ) -> None:
-    """Evaluate pressure and energy on copies of a sample of the particles, called ``numbers``.
+    """Evaluate pressure and energy on copies of a sample of the particles; ``numbers`` are their numbers.
 
     Raises:
-        PluginFault: it wrote to what it was given, or its energy is not the work of its pressure.
+        PluginFault: it wrote to its arguments, or its energy is not the work of its pressure.
     """
     which = sample(len(numbers))
 
@@ -42,7 +42,7 @@ def rehearse_equation_of_state(
         returned = called(what, volume_ratio[which])
         require_finite(author, f"{article} {what}", returned, numbers[which], [volume_ratio[which]])
 
-    # W(J) = -∫ p dJ from 1 to J, by the midpoints of equal parts.
+    # W(J) = -∫ p dJ from 1 to J, by the midpoint rule.
     middles = (np.arange(PARTS) + 0.5) / PARTS
     places = 1 + (RATIOS - 1)[:, None] * middles
     with np.errstate(invalid="ignore"):

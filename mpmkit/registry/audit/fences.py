@@ -1,4 +1,4 @@
-"""Copies of arrays between bands that nobody may write to."""
+"""Copies of arrays between bands of memory that must not change."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from ...contracts import Plugin
 from ...errors import PluginFault
 
 SAMPLE = 500
-"""Particles of a rehearsal, at most."""
+"""Largest number of particles of a trial call."""
 BAND = 16
-"""Rows of a band; an index that runs off its end is caught, one that is wild is not."""
+"""Rows of a band; an index slightly out of range is detected, one that is far out of range is not."""
 READ, WRITTEN = 0xFF, 0x3F
-"""Byte that fills the bands: of what is read it makes no number, so that reading there shows; of what is
-written 5e-4, since adding to what is no number does not."""
+"""Byte that fills the bands. In arrays that are read it makes NaN, so that a read there shows in the result.
+In arrays that are written it makes 5e-4, because adding to NaN would not change it."""
 
 
 class Fenced:
@@ -29,12 +29,12 @@ class Fenced:
 
     @property
     def intact(self) -> bool:
-        """Whether the bands are as they were."""
+        """Whether the bands are unchanged."""
         return np.concatenate([self._store[:BAND], self._store[-BAND:]]).tobytes() == self._bands
 
     @property
     def changed(self) -> bool:
-        """Whether the rows are no longer what was given."""
+        """Whether the rows have changed."""
         return self.rows.tobytes() != self._given
 
 

@@ -1,4 +1,4 @@
-"""Laws: the stress and the state that they write, the energy that they return, and their first state."""
+"""Laws: the stress and the state that they write, the energy that they return, and their initial state."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def rehearse_law(
     dt: float,
     numbers: np.ndarray,
 ) -> None:
-    """Call a law on copies of a sample of its particles, called ``numbers``.
+    """Call a law on copies of a sample of its particles; ``numbers`` are their numbers.
 
     Raises:
-        PluginFault: it wrote where it must not, or not as it must.
+        PluginFault: it wrote to an array that it must not change, or not as the contract says.
     """
     which = sample(len(numbers))
     arrays = {name: array for name, array in vars(kinematics).items() if isinstance(array, np.ndarray)}
@@ -59,7 +59,7 @@ def _rehearse_energy(
     stress: np.ndarray,
     given: dict[str, Fenced],
 ) -> None:
-    """The energy of a law only looks: at the stress and at the state as well."""
+    """The energy of a law must not change its arguments, stress and state included."""
     copies = {name: Fenced(array, READ) for name, array in state.items()}
     seen = Fenced(stress, READ)
     energy = law.strain_energy(kinematics, {name: array.rows for name, array in copies.items()}, seen.rows)
@@ -77,9 +77,9 @@ def _as_states(arrays: dict[str, Fenced]) -> dict[str, Fenced]:
 def require_stress(
     law: ConstitutiveLaw, kinematics: Kinematics, dt: float, stress: np.ndarray, numbers: np.ndarray
 ) -> None:
-    """Raise PluginFault if a law gave a stress that is not finite, and the run does not diverge as it is.
+    """Raise PluginFault if a law gave a stress that is not finite although the run does not diverge.
 
-    It does where a step strains a particle by as much as its size, or its volume is beyond sense.
+    A run diverges if a step strains a particle by 1 or more, or if a volume ratio is far out of range.
     """
     if first_bad(stress) < 0:
         return

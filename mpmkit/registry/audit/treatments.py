@@ -1,4 +1,4 @@
-"""Volumetric treatments: the field that they average is not theirs to change."""
+"""Volumetric treatments: they must not change the field that they average."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .fences import READ, Fenced, require_unchanged
 
 
 class Rehearsed:
-    """A copy of a particle field, to be given to a treatment in place of the field itself."""
+    """A copy of a particle field that is given to a treatment instead of the field itself."""
 
     def __init__(self, field: np.ndarray) -> None:
         self._field = field
@@ -17,11 +17,11 @@ class Rehearsed:
 
     @property
     def field(self) -> np.ndarray:
-        """What the treatment is given."""
+        """The copy that the treatment is given."""
         return self._given.rows
 
     def result(self, author: VolumetricTreatment, treated: np.ndarray) -> np.ndarray:
-        """What it made of the field; the field itself where it gave back what it was given.
+        """The treated field; the field itself if the treatment returned its argument.
 
         Raises:
             PluginFault: it changed the field.

@@ -183,7 +183,7 @@ def rehearse_contact(author: Contact, nodes: ContactNodes, dt: float | None = No
         velocity=velocity.rows,
         touched=touched.rows,
         memory={name: array.rows for name, array in memory.items()},
-        **{name: array.rows for name, array in read.items()},
+        **{name: array.rows for name, array in read.items()},  # type: ignore[arg-type]
     )
     call_contact(author, rehearsed, dt)
     require_unchanged(author, {**read, "touched": touched})

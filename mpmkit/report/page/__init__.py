@@ -7,7 +7,7 @@ from pathlib import Path
 from ...output import RunDirectory
 from ...output.atomic import cannot_write, replacing
 from ...version import __version__
-from . import balance, flow_curves, headline, histories, numerics, player, repeat
+from . import balance, flow_curves, headline, histories, measured, numerics, player, repeat, wall_forces
 from .assembled import assembled
 from .section import Section
 from .source import Source, read_source
@@ -17,17 +17,27 @@ __all__ = ["MOST_BYTES", "page_of", "write_page"]
 MOST_BYTES = 3_000_000
 """Largest size of a page."""
 BEFORE = (headline,)
-BEHIND = (histories, flow_curves, balance, numerics, repeat)
+BEHIND = (histories, measured, flow_curves, balance, wall_forces, numerics, repeat)
 """Sections before and after the player. The player gets the rest of the allowed size. To add a section, write
 a module and add it here."""
 
 
-def page_of(directory: Path, live: bool = False) -> str:
+def page_of(
+    directory: Path,
+    live: bool = False,
+    *,
+    title: str | None = None,
+    above: str | None = None,
+    most: int = MOST_BYTES,
+) -> str:
     """The page of a run as HTML; the run may still be in progress.
 
     Args:
         directory: of the run; its history must have a row.
         live: whether the scripts of the page may ask the server that it came from for newer data.
+        title: of the page; default: the name of the case.
+        above: address of the page of the study that the run belongs to, relative to this page.
+        most: largest size of the page, bytes.
 
     Raises:
         CaseError: where the directory does not hold a run.
@@ -39,9 +49,10 @@ def page_of(directory: Path, live: bool = False) -> str:
 
     def page(flow: Section | None) -> str:
         sections = [*before, *([] if flow is None else [flow]), *behind]
-        return assembled(results.title, results.case.get("description", ""), sections, made_by, live)
+        said = results.case.get("description", "")
+        return assembled(title or results.title, said, sections, made_by, live, above)
 
-    room = MOST_BYTES - len(page(None).encode()) - 20_000
+    room = most - len(page(None).encode()) - 20_000
     return page(player.section(source, room))
 
 

@@ -31,7 +31,12 @@ LIVE = f"{FORBIDDEN}; connect-src 'self'"
 
 
 def assembled(
-    title: str, description: str, sections: Sequence[Section], made_by: str, live: bool = False
+    title: str,
+    description: str,
+    sections: Sequence[Section],
+    made_by: str,
+    live: bool = False,
+    above: str | None = None,
 ) -> str:
     """The whole page.
 
@@ -41,11 +46,13 @@ def assembled(
         sections: in their order.
         made_by: what made the page, and with which version.
         live: whether its scripts may ask the server that it came from for newer data.
+        above: address of the page that this one is a part of, relative to this one.
     """
     style = "\n".join(_static(name) for name in STYLES)
     script = "\n".join(_static(name) for name in SCRIPTS)
     data = {section.name: section.data for section in sections if section.data}
-    links = "".join(f'<a href="#{s.name}">{escape(s.title)}</a>' for s in sections)
+    links = "" if above is None else f'<a href="{escape(above)}">↑ all runs</a>'
+    links += "".join(f'<a href="#{s.name}">{escape(s.title)}</a>' for s in sections)
     parts = "".join(
         f'<section id="{s.name}" aria-labelledby="{s.name}-title">'
         f'<h2 id="{s.name}-title">{escape(s.title)}</h2>'

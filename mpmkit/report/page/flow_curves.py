@@ -16,7 +16,7 @@ from ...rheology.flow_curve import flow_curve
 from .histories import listed
 from .section import Section, chart_place, note, pairs
 from .source import Source
-from .words import given, in_signs, number
+from .words import given, number, unit_of
 
 POINTS = 121
 DECADES = (1e-3, 1e3)
@@ -75,8 +75,7 @@ def _parameters(material: Material) -> list[tuple[str, str]]:
         extra = field.json_schema_extra
         unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
         shown = given(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
-        signs = "" if unit == "1" else in_signs(unit)
-        found.append((key.replace("_", " ").capitalize(), f"{shown} {signs}".rstrip()))
+        found.append((key.replace("_", " ").capitalize(), f"{shown} {unit_of(unit)}".rstrip()))
     return found
 
 

@@ -7,16 +7,19 @@ from html import escape
 import numpy as np
 
 from ...case.ending import latest
+from ...output import RunDirectory
+from ...output.checkpoints import Checkpoints
 from ...output.summary import LEAST_RATE, T500_DIAMETER, lifted_later
 from .section import Section, paragraph
 from .source import Source
-from .words import count, duration, length, number, seconds
+from .words import count, duration, length, number, seconds, unit_of
 
 ENDED = {
     "finished": "The run came to its end",
     "interrupted": "The run was interrupted",
     "output-error": "The run stopped, because its files could not be written",
 }
+CONTINUE = "To continue the run: mpmkit run --resume DIRECTORY."
 
 
 def section(source: Source) -> Section:
@@ -44,7 +47,9 @@ def _ending(source: Source) -> str:
             f"A guard stopped the run at t = {seconds(end)} ({why}): do not trust its last state; "
             f"there are no final results. {errors[-1] if errors else ''}"
         ).strip()
-    return f"{ENDED[why]} at t = {seconds(end)}. {_state(source)}"
+    can_continue = why == "interrupted" and Checkpoints(RunDirectory(source.directory).checkpoints).paths()
+    further = f" {CONTINUE}" if can_continue else ""
+    return f"{ENDED[why]} at t = {seconds(end)}. {_state(source)}{further}"
 
 
 def _state(source: Source) -> str:
@@ -65,7 +70,7 @@ def figures(source: Source) -> list[tuple[str, str, str]]:
         found += [_spread(source), *_t500(source), _slump(source)]
     else:
         found += _extent(source)
-    found += [_height(source), _speed(source)]
+    found += [_height(source), *_measurements(source), _speed(source)]
     if not source.running:
         summary = source.results.summary
         took = duration(summary["wall_time"])
@@ -80,7 +85,7 @@ def _spreads(source: Source) -> bool:
     if source.space.name == "plane-strain":
         return False
     gravity = case.get("gravity")
-    falls = gravity is None or gravity[-1] < 0
+    falls = gravity is None or gravity[-1] < 0 or bool(case.get("forces"))
     closed = case["grid"].get("faces", {}).get(f"{vertical}_min", "open") not in ("open", "periodic")
     return falls and closed and source.results.series("spread_diameter") is not None
 
@@ -91,7 +96,8 @@ def _last(source: Source, name: str) -> float | None:
 
 
 def _spread(source: Source) -> tuple[str, str, str]:
-    name = "Spread now" if source.running else "Final spread"
+    early = source.results.summary.get("stopped_because") in ("interrupted", "output-error")
+    name = "Spread now" if source.running else "Spread so far" if early else "Final spread"
     if source.results.stopped_by_guard or (value := _last(source, "spread_diameter")) is None:
         return name, "none", "the material did not reach a final shape"
     return name, length(value), "diameter of the material on the floor, as in a slump-flow test"
@@ -143,6 +149,21 @@ def _height(source: Source) -> tuple[str, str, str] | None:
         length(value),
         f"of the highest point of the material, {_when(source)}",
     )
+
+
+def _measurements(source: Source) -> list[tuple[str, str, str]]:
+    """What the case measures: what an apparatus would report."""
+    if source.results.stopped_by_guard:
+        return []
+    found = []
+    for name, measurement in source.results.case.get("measurements", {}).items():
+        value, unit, label = _last(source, name), unit_of(measurement["unit"]), name.replace("_", " ")
+        shown = "none"
+        if value is not None:
+            shown = length(value) if unit == "m" else f"{number(value)} {unit}".rstrip()
+        said = f"{measurement['description']}, {_when(source)}"
+        found.append((f"{label[:1].upper()}{label[1:]}", shown, said))
+    return found
 
 
 def _when(source: Source) -> str:

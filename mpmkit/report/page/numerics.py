@@ -16,6 +16,7 @@ LIMITS = {
     "acoustic": "how fast sound crosses a cell",
     "viscous": "how fast viscosity spreads a velocity over a cell",
     "advective": "how fast the material crosses a cell",
+    "forces": "how fast a force changes",
 }
 KINDS = {
     "shape": "Between particles and grid",

@@ -34,6 +34,8 @@ class Scale:
     low: float
     high: float
     logarithmic: bool = False
+    gaps: bool = False
+    """whether some particles have no value: code 0 is theirs, and the scale begins at code 1"""
 
     def codes(self, values: np.ndarray) -> np.ndarray:
         """(n,) uint8"""
@@ -41,6 +43,8 @@ class Scale:
         if self.logarithmic:
             low, high, x = np.log(low), np.log(high), np.log(np.maximum(x, self.low))
         part = np.clip((x - low) / (high - low), 0.0, 1.0)
+        if self.gaps:
+            return np.where(np.isnan(part), 0, 1 + np.rint((LEVELS_8 - 1) * part)).astype(np.uint8)
         return np.rint(LEVELS_8 * part).astype(np.uint8)
 
 
@@ -73,7 +77,7 @@ def packed(
         codes = np.rint(LEVELS_16 * (moment.position - lower) / extent).clip(0, LEVELS_16).astype(np.uint16)
         half = np.exp(np.log(np.maximum(moment.half_size.astype(float), 1e-300)) @ boxes.T)
         sizes = np.rint(LEVELS_8 * (half / longest).clip(0, 1)).clip(1).astype(np.uint8)
-        planes = [*codes.T, *sizes.T, *(s.codes(getattr(moment, q)) for q, s in scales.items()), moment.body]
+        planes = [*codes.T, *sizes.T, *(s.codes(moment.values(q)) for q, s in scales.items()), moment.body]
         if not same:
             content += _bytes(np.diff(moment.number, prepend=0).astype(np.uint32))
         for place, plane in enumerate(planes):

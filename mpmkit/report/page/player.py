@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...case.state_variables import LAW, particle_variables
 from ...contracts.law import initial_state
 from ...errors import GuardStop
 from ...output.flow import Moment
@@ -19,23 +20,31 @@ from .section import Section, note, paragraph
 from .source import Source
 from .thinning import Thinned, fitting
 from .walls import walls_of
-from .words import number
+from .words import number, unit_of
 
 NO_WALLS = ("open", "periodic", "symmetry")
 """Conditions of faces that are not walls."""
 TRIMMED = 99.5
 """Percentile at the end of a colour scale, so that a single particle does not set the scale."""
+WIDE = 300.0
+"""A quantity whose largest value is above this multiple of the lowest has a logarithmic scale."""
 DECADES = 1e-3
 """Lowest shear rate on the colour scale, relative to the largest."""
-LABELS = {
-    "speed": ("Speed", "m/s", "how fast the material moves"),
-    "shear_rate": (
-        "Shear rate",
-        "1/s",
-        "how fast the material is sheared; the scale is logarithmic",
-    ),
-    "yielded": ("Yielded zone", "", "the material flows where the stress exceeds the yield stress"),
-    "pressure": ("Pressure", "Pa", "of the material, positive in compression"),
+
+
+class Words(NamedTuple):
+    """A quantity for a reader."""
+
+    label: str
+    unit: str
+    meaning: str
+
+
+WORDS = {
+    "speed": Words("Speed", "m/s", "how fast the material moves"),
+    "shear_rate": Words("Shear rate", "1/s", "how fast the material is sheared"),
+    "yielded": Words("Yielded zone", "", "the material flows where the stress exceeds the yield stress"),
+    "pressure": Words("Pressure", "Pa", "of the material, positive in compression"),
 }
 
 
@@ -49,6 +58,7 @@ def section(source: Source, room: int) -> Section | None:
     for_walls = sum(len(text) for wall in walls for shape in wall["shapes"] for text in shape.values())
     for_walls += sum(12 * len(place) for wall in walls for place in wall["places"])
     scales = _scales(source)
+    words = _words(source, scales)
     longest = _longest(source)
 
     def pack(moments: Sequence[Moment]) -> Packed:
@@ -61,10 +71,10 @@ def section(source: Source, room: int) -> Section | None:
     data = _scene(source) | {
         "packing": thinned.packed.description,
         "blob": thinned.packed.text,
-        "quantities": [_quantity(name, scale) for name, scale in scales.items()],
+        "quantities": [_quantity(name, scale, words[name]) for name, scale in scales.items()],
         "walls": walls,
     }
-    return Section("flow", "Flow", _controls(source, list(scales)) + _said(thinned, source), data)
+    return Section("flow", "Flow", _controls(source, words) + _said(thinned, source), data)
 
 
 def _boxes(dim: int) -> np.ndarray:
@@ -89,11 +99,32 @@ def _scales(source: Source) -> dict[str, Scale]:
         scales["shear_rate"] = Scale(DECADES * most, most, logarithmic=True)
     if _can_yield(source):
         scales["yielded"] = Scale(0.0, 1.0)
-    pressure = np.concatenate([moment.pressure for moment in moments])
-    low, high = np.percentile(pressure, [100 - TRIMMED, TRIMMED])
-    if high > low:
-        scales["pressure"] = Scale(float(low), float(high))
+    for name in ("pressure", *dict.fromkeys(name for moment in moments for name in moment.added)):
+        values = np.concatenate([moment.values(name) for moment in moments])
+        there = np.isfinite(values)
+        if not there.any():
+            continue
+        low, high = np.percentile(values[there], [100 - TRIMMED, TRIMMED])
+        if high > low:
+            wide = bool(low > 0 and high > WIDE * low)
+            scales[name] = Scale(float(low), float(high), wide, gaps=not there.all())
     return scales
+
+
+def _words(source: Source, names: Iterable[str]) -> dict[str, Words]:
+    """The words for each quantity; those of a state variable are its law's."""
+    known = {} if source.case is None else particle_variables(source.case)
+    found = {}
+    for name in names:
+        if name in WORDS:
+            found[name] = WORDS[name]
+            continue
+        label = name.removeprefix(LAW).replace("_", " ").capitalize()
+        if name not in known:
+            found[name] = Words(label, "", "a field of the particles")
+            continue
+        found[name] = Words(label, unit_of(known[name].units), known[name].long_name)
+    return found
 
 
 def _can_yield(source: Source) -> bool:
@@ -108,16 +139,21 @@ def _can_yield(source: Source) -> bool:
         return False
 
 
-def _quantity(name: str, scale: Scale) -> dict[str, Any]:
-    label, unit, meaning = LABELS[name]
+def _quantity(name: str, scale: Scale, words: Words) -> dict[str, Any]:
+    meaning = words.meaning
+    if scale.logarithmic:
+        meaning += "; the scale is logarithmic"
+    if scale.gaps:
+        meaning += "; grey where it has no value"
     return {
         "name": name,
-        "label": label,
-        "unit": unit,
+        "label": words.label,
+        "unit": words.unit,
         "meaning": meaning,
         "low": scale.low,
         "high": scale.high,
         "logarithmic": scale.logarithmic,
+        "gaps": scale.gaps,
         "colours": stops(name),
     }
 
@@ -151,11 +187,11 @@ def _scene(source: Source) -> dict[str, Any]:
     }
 
 
-def _controls(source: Source, quantities: list[str]) -> str:
+def _controls(source: Source, quantities: dict[str, Words]) -> str:
     choices = "".join(
-        f'<label><input type="radio" name="colour" value="{name}"{" checked" if row == 0 else ""}>'
-        f"<span>{escape(LABELS[name][0])}</span></label>"
-        for row, name in enumerate(quantities)
+        f'<label><input type="radio" name="colour" value="{escape(name)}"{" checked" if row == 0 else ""}>'
+        f"<span>{escape(words.label)}</span></label>"
+        for row, (name, words) in enumerate(quantities.items())
     )
     how = "Drag to turn. To zoom, click and then scroll, or pinch. Arrow keys turn the view; + and − zoom."
     solid = source.space.dim == 3

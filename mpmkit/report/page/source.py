@@ -12,6 +12,7 @@ import numpy as np
 
 from ...case import load_case
 from ...case.model import Case
+from ...case.state_variables import LAW
 from ...errors import CaseError, MpmkitError
 from ...output import RunDirectory, read_frame, read_frames, read_wall_frames
 from ...output.flow import TYPES, Moment, moment_of, read_flow
@@ -85,6 +86,7 @@ def read_source(directory: Path) -> Source:
 def _moments_of_frames(results: RunResults) -> list[Moment]:
     """The flow from the frames, for a run that saved no data for the player."""
     dim = SPACES[results.case["space"]].dim
+    fields_of_case = results.case.get("output", {}).get("fields", {})
     found = []
     for time, path in results.frames:
         frame = read_frame(path)
@@ -92,8 +94,13 @@ def _moments_of_frames(results: RunResults) -> list[Moment]:
         fields = frame | {"position": frame["position"][:, :dim], "number": number}
         if "half_size" in fields:
             fields["half_size"] = fields["half_size"][:, :dim]
+        added = {
+            name: values
+            for name, values in frame.items()
+            if values.ndim == 1 and (name in fields_of_case or name.startswith(LAW))
+        }
         if TYPES.keys() <= fields.keys():
-            found.append(moment_of(time, 1.0, fields))
+            found.append(moment_of(time, 1.0, fields, added))
     return found
 
 

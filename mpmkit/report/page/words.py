@@ -38,6 +38,11 @@ def in_signs(unit: str) -> str:
     return unit
 
 
+def unit_of(unit: str) -> str:
+    """A unit for a reader; a plain number has none."""
+    return "" if unit == "1" else in_signs(unit)
+
+
 def length(metres: float) -> str:
     """A length in mm, or in m where it is large."""
     return f"{number(metres)} m" if abs(metres) >= 10 else f"{number(1e3 * metres)} mm"

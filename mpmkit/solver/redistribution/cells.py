@@ -35,10 +35,11 @@ class BoxCells:
         self._part = np.empty((n, self._dim, PARTS))
         fill_parts(position, half_size, 1 / block.spacing, self._base, self._part)
 
-    def filling(self) -> np.ndarray:
+    def filling(self, weights: np.ndarray | None = None) -> np.ndarray:
         block, pairs = self.block, self.block.empty(PAIR)
+        size = self._size if weights is None else self._size * weights
         scatter_pairs(self._dim, PARTS)(
-            pairs, block.strides, block.lower, self._tasks, self._base, self._part, self._size, self._size
+            pairs, block.strides, block.lower, self._tasks, self._base, self._part, size, size
         )
         sums = np.ascontiguousarray(pairs[:, 0])
         block.fold(sums)

@@ -43,7 +43,7 @@ class Stage:
     Attributes:
         acts: whether the redistribution can ever be due; otherwise shear is not summed up.
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
-        time: s, since then.
+        elapsed: s, since then.
         energy: J, energy added by all redistributions so far (negative: removed). It is the sum of the
             changes
         of kinetic, strain, compressive and potential energy. Potential energy is that of the history: it has
@@ -63,23 +63,27 @@ class Stage:
         particles: Particles,
         radial: bool,
         gravity: np.ndarray,
+        spacing: float,
     ) -> None:
+        """``spacing``: m, of particles that come in; used if there are none yet."""
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
-        self.shear = self.time = self.energy = 0.0
+        self.shear = self.elapsed = self.energy = 0.0
         self.momentum = np.zeros(grid.dim)
         self._blocks: dict[tuple, Mirrored] = {}
         self._downwards = np.where(grid.periodic, 0.0, gravity)
         self._follows = scheme.shape.particle_domain != "fixed"
         self._grid, self._walls = grid, walls
         self._particles, self._radial = particles, radial
-        self._times = max(1, round(grid.cell_size / self._typical_spacing()))
+        self._times = max(1, round(grid.cell_size / (self._typical_spacing() if len(particles) else spacing)))
 
     def state(self) -> State:
-        return {name: np.array(getattr(self, name)) for name in ("shear", "time", "energy", "momentum")}
+        return {name: np.array(getattr(self, name)) for name in ("shear", "elapsed", "energy", "momentum")}
 
     def restore(self, state: State) -> None:
-        self.shear, self.time, self.energy = (float(state[name]) for name in ("shear", "time", "energy"))
+        self.shear, self.elapsed, self.energy = (
+            float(state[name]) for name in ("shear", "elapsed", "energy")
+        )
         self.momentum = state["momentum"].copy()
         self._blocks = {}
 
@@ -104,7 +108,7 @@ class Stage:
             most = max((float(rate.max()) for rate in rates), default=0.0)
         if self.acts:
             self.shear += dt * most
-            self.time += dt
+            self.elapsed += dt
 
     def _hold_volume(self, part: slice) -> float:
         """Adjust boxes of a fluid to their volume; return its largest shear rate, 1/s."""
@@ -126,11 +130,11 @@ class Stage:
         self._splines = self.nodes = self._lattice(1, position, size)
         self.places = self._lattice(self._times, position, size)
         before, momentum = self._energy_of_particles(), self._momentum_of_particles()
-        author.redistribute(self, self.time)
+        author.redistribute(self, self.elapsed)
         self.energy += self._energy_of_particles() - before
         self.momentum += self._momentum_of_particles() - momentum
         del self.nodes, self.places, self._splines, self._window, self._tasks
-        self.shear = self.time = 0.0
+        self.shear = self.elapsed = 0.0
         return True
 
     def _energy_of_particles(self) -> float:
@@ -166,9 +170,13 @@ class Stage:
 
     # --- For the redistribution
 
+    @property
+    def time(self) -> float:
+        return self._particles.time
+
     def shear_rate(self) -> np.ndarray:
         rate = shear_rate(self._particles.velocity_gradient)
-        return np.minimum(rate, OVER_MEAN * self.shear / self.time) if self.time > 0 else rate
+        return np.minimum(rate, OVER_MEAN * self.shear / self.elapsed) if self.elapsed > 0 else rate
 
     def cells(self) -> contract.Cells:
         p = self._particles
@@ -191,7 +199,7 @@ class Stage:
         p = self._particles
         self._require(displacement, "a displacement", p.position.shape)
         displacement = np.ascontiguousarray(displacement, dtype=np.float64)
-        low, high = self._kept_from_walls()
+        low, high = self._kept_inside()
         change = np.zeros((len(p), p.affine.shape[1]))
         for part in self._fluids():
             shifts.shift(p.position[part], displacement[part], low, high, p.affine[part], change[part])
@@ -202,11 +210,12 @@ class Stage:
                 taken = self._splines.at_particles(self._splines.average(along, p.mass))
                 p.velocity[:, axis] += along - taken
 
-    def _kept_from_walls(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest positions, m, along each axis; infinite if there is no wall."""
+    def _kept_inside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest positions, m, along each axis: off the walls, and not out of an open face; only
+        the flow carries material through it."""
         grid, margin = self._grid, AT_A_WALL * self._grid.cell_size
-        walls = (grid.faces != OPEN) & (grid.faces != PERIODIC)
-        return np.where(walls[:, 0], margin, -np.inf), np.where(walls[:, 1], grid.extent - margin, np.inf)
+        away = np.where(grid.faces == OPEN, 0.0, np.where(grid.faces == PERIODIC, -np.inf, margin))
+        return away[:, 0], grid.extent - away[:, 1]
 
     def weigh(self, factor: np.ndarray) -> None:
         self._require(factor, "a weight", (len(self._particles),))
@@ -229,4 +238,4 @@ class Stage:
         audit.require_finite(author, what, given, p.number, [p.position, p.volume, p.velocity_gradient])
 
     def _fluids(self) -> list[slice]:
-        return [group.part for group in self._particles.groups if group.law.uses_equation_of_state]
+        return [group.part for group in self._particles.present_groups if group.law.uses_equation_of_state]

@@ -249,6 +249,7 @@ class Wall:
             pressed=self._pressed(acting, touched, dt) * resistance,
             touched=touched,
             memory={name: array[at] for name, array in w.memory.items()},
+            time=self._time,
         )
 
     def fill(self, dt: float | None) -> None:

@@ -76,11 +76,15 @@ class BodySurface(RigidSurface):
         return None
 
     def cautions(self, case: Any) -> list[str]:
-        """Of faces of a mesh that meet inside it a node knows the nearest; other shapes have parts."""
-        if self.side == "outside" or self.shape.kind != "mesh":
+        """Of faces that meet in an inner edge a node knows the nearest, unless the shape has parts."""
+        if self.shape.kind == "mesh" and self.side == "inside":
+            what = "a mesh"
+        elif self.shape.kind == "polygon" and not self.shape.convex:
+            what = "a polygon with a corner that points inwards"
+        else:
             return []
         return [
-            f"walls.{name} is a mesh, and contact '{wall.contact.name}' lets material slide in its inner "
+            f"walls.{name} is {what}, and contact '{wall.contact.name}' lets material slide in its inner "
             "edges: a node knows only one of the faces there, so that material may sink into the edge; "
             "a wall of its own for each face holds it"
             for name, wall in case.walls.items()

@@ -10,12 +10,17 @@ function channels(colour) {
   return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
 }
 
-/** 256 colours between those of a list, as bytes of red, green, blue and alpha. */
-function ramp(colours, stepped) {
+const NONE = '#98a2ab'; // of material that has no value
+
+/** 256 colours of a quantity, as bytes of red, green, blue and alpha; with gaps, the first is that of no value. */
+function ramp({ name, colours, gaps }) {
   const bytes = new Uint8Array(4 * 256);
   const stops = colours.map(channels);
-  for (let k = 0; k < 256; k++) {
-    const at = (k / 255) * (stops.length - 1);
+  const stepped = name === 'yielded';
+  const first = gaps ? 1 : 0;
+  if (gaps) bytes.set([...channels(NONE), 255]);
+  for (let k = first; k < 256; k++) {
+    const at = ((k - first) / (255 - first)) * (stops.length - 1);
     const low = stepped ? Math.round(at) : Math.min(Math.floor(at), stops.length - 2);
     for (let c = 0; c < 3; c++) {
       bytes[4 * k + c] = stepped ? stops[low][c] : stops[low][c] + (at - low) * (stops[low + 1][c] - stops[low][c]);
@@ -25,7 +30,12 @@ function ramp(colours, stepped) {
   return bytes;
 }
 
-/** Value of a quantity at a position from 0 to 1 on its scale. */
+/** Where a place among the colours of a quantity is on its scale, from 0 to 1. */
+function partAt({ gaps }, place) {
+  return gaps ? (255 * place - 1) / 254 : place;
+}
+
+/** Value of a quantity at a part of its scale. */
 function valueAt({ low, high, logarithmic }, part) {
   return logarithmic ? low * Math.pow(high / low, part) : low + part * (high - low);
 }
@@ -66,7 +76,8 @@ function drawBar(canvas, quantity) {
   pen.fillStyle = pen.strokeStyle = styled('--soft');
   pen.textBaseline = 'top';
   const [left, right, thick] = [18, width - 18, 10];
-  const colours = ramp(quantity.colours, quantity.name === 'yielded');
+  const colours = ramp(quantity);
+  const first = quantity.gaps ? 1 : 0;
   const along = (part) => left + part * (right - left);
   if (quantity.name === 'yielded') {
     ['at rest, as a solid', 'flows'].forEach((word, k) => {
@@ -79,7 +90,7 @@ function drawBar(canvas, quantity) {
     return;
   }
   for (let x = left; x < right; x++) {
-    const k = 4 * Math.round((255 * (x - left)) / (right - left));
+    const k = 4 * (first + Math.round(((255 - first) * (x - left)) / (right - left)));
     pen.fillStyle = `rgb(${colours[k]},${colours[k + 1]},${colours[k + 2]})`;
     pen.fillRect(x, 2, 1.5, thick);
   }

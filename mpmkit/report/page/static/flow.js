@@ -11,7 +11,7 @@ class Flow {
     this.end = moments[moments.length - 1].time;
     this.pair = -1;
     this.most = Math.max(...moments.map((moment) => moment.count));
-    /* x, y, z, half size, half size, value from 0 to 1 of each particle */
+    /* x, y, z, half size, half size, and place among the colours of each particle: from 0 to 1, or -1 for no value */
     this.rows = new Float32Array(6 * this.most);
     this.count = 0;
   }
@@ -52,7 +52,7 @@ class Flow {
     const { lower, extent, longest } = this.scene.packing;
     const dim = this.dim;
     const codes = [before.code[quantity], after.code[quantity]];
-    const nearest = quantity === 'yielded';
+    const { gaps } = this.scene.quantities.find(({ name }) => name === quantity);
     const grow = (this.grow = Math.pow(before.share, -1 / dim)); // each also fills the volume of those that were left out
     const half = [before.size[0], before.size[before.size.length - 1]];
     for (let k = 0; k < before.count; k++) {
@@ -68,8 +68,11 @@ class Flow {
       if (dim === 2) this.rows[row + 2] = 0;
       this.rows[row + 3] = (grow * longest * half[0][k]) / 255;
       this.rows[row + 4] = (grow * longest * half[1][k]) / 255;
-      const last = there ? codes[1][other] : codes[0][k];
-      this.rows[row + 5] = (nearest ? (part < 0.5 ? codes[0][k] : last) : codes[0][k] + part * (last - codes[0][k])) / 255;
+      const first = codes[0][k];
+      const last = there ? codes[1][other] : first;
+      const nearest = quantity === 'yielded' || (gaps && (first === 0 || last === 0));
+      const code = nearest ? (part < 0.5 ? first : last) : first + part * (last - first);
+      this.rows[row + 5] = gaps && code === 0 ? -1 : code / 255;
     }
     this.count = before.count;
     return this;

@@ -143,9 +143,12 @@ class Player {
     if (!found) return void (reading.textContent = '');
     const { quantity } = this;
     const where = found.point.map((x, axis) => `${this.scene.axes[axis]} = ${shown(1e3 * x)} mm`).join(', ');
-    const value = valueAt(quantity, found.value);
-    const beyond = found.value >= 1 ? 'at least ' : quantity.logarithmic && found.value <= 0 ? 'at most ' : '';
-    const what = quantity.name === 'yielded' ? (found.value > 0.5 ? 'flows' : 'at rest, as a solid') : `${beyond}${shown(value)} ${quantity.unit}`;
+    const part = partAt(quantity, found.value);
+    const value = valueAt(quantity, part);
+    const beyond = part >= 1 ? 'at least ' : quantity.logarithmic && part <= 0 ? 'at most ' : '';
+    let what = `${beyond}${shown(value)} ${quantity.unit}`.trim();
+    if (quantity.name === 'yielded') what = found.value > 0.5 ? 'flows' : 'at rest, as a solid';
+    if (found.value < 0) what = 'no value';
     reading.textContent = `${what} · ${where}`;
   }
 }

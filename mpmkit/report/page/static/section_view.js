@@ -64,7 +64,7 @@ class SectionView {
     gl.scissor(...[left, height - bottom, right - left, bottom - top].map((length) => Math.round(length * density)));
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
-    this.surface.colours(ramp(quantity.colours, quantity.name === 'yielded'));
+    this.surface.colours(ramp(quantity));
     this.surface.particles(flow);
     const scale = [(2 * this.scale) / width, (2 * this.scale) / height];
     const origin = [(2 * this.shift[0]) / width - 1, 1 - (2 * this.shift[1]) / height];

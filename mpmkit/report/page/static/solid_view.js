@@ -50,7 +50,7 @@ class SolidView {
     const distance = (1.05 * this.radius) / Math.sin(ANGLE / 2) / Math.min(1, 1.15 * aspect) / this.near;
     const lens = perspective(ANGLE, aspect, Math.max(distance - 4 * this.radius, 0.02 * distance), distance + 4 * this.radius);
     const view = orbit(this.target, this.turn, this.rise, distance);
-    surface.colours(ramp(quantity.colours, quantity.name === 'yielded'));
+    surface.colours(ramp(quantity));
     surface.particles(flow);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);

@@ -15,7 +15,7 @@ const BOX = [
   void main() { colour = texture(colours, vec2((shade * 255.0 + 0.5) / 256.0, 0.5)); }`,
 ];
 
-/* The sum of the areas of boxes, each spread over a disc, and of their values: 1 inside, 1/2 at a surface. */
+/* Sums over boxes, each spread over a disc: of values, of areas (1 inside, 1/2 at a surface), and of areas with a value. */
 const SPREAD = [
   `#version 300 es
   in vec2 corner; in vec3 centre; in vec2 size; in float value;
@@ -33,7 +33,8 @@ const SPREAD = [
   void main() {
     float inner = max(0.0, 1.0 - dot(place, place));
     float part = weight * inner * inner;
-    sums = vec4(part * shade, part, 0.0, 1.0);
+    float known = step(0.0, shade);
+    sums = vec4(part * shade * known, part, part * known, 1.0);
   }`,
 ];
 
@@ -46,11 +47,11 @@ const FILL = [
   precision highp float;
   in vec2 place; uniform sampler2D sums, colours; uniform float stepped; out vec4 colour;
   void main() {
-    vec2 sum = texture(sums, place).rg;
+    vec3 sum = texture(sums, place).rgb;
     float soft = max(fwidth(sum.g), 1e-4);
     float cover = smoothstep(0.5 - soft, 0.5 + soft, sum.g);
-    float mean = sum.r / max(sum.g, 1e-6);
-    float shade = mix(mean, step(0.5, mean), stepped);
+    float mean = sum.r / max(sum.b, 1e-6);
+    float shade = sum.b < 0.5 * sum.g ? -1.0 : mix(mean, step(0.5, mean), stepped);
     colour = vec4(texture(colours, vec2((shade * 255.0 + 0.5) / 256.0, 0.5)).rgb * cover, cover);
   }`,
 ];
