@@ -8,6 +8,7 @@ os.environ["MPMKIT_PLUGINS"] = ""
 
 import numba
 import pytest
+from third_party import distribution  # noqa: F401 - a fixture of more than one file
 
 
 @pytest.hookimpl(tryfirst=True)

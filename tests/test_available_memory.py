@@ -7,7 +7,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from test_case import GOOD, changed
+from case_sentences import GOOD, changed
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.errors import CaseError

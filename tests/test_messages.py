@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from test_case import GOOD, MATERIAL, changed, sentence
+from case_sentences import GOOD, MATERIAL, changed, sentence
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.synonyms import WORDS, meant

@@ -40,16 +40,21 @@ def cake(**output):
     return mpmkit.parse_case(CAKE | {"output": {"report": False} | output})
 
 
-def scripted(spread, speed=lambda t: 1.0, step=0.01, height=0.1):
-    """A stand-in for a simulation, whose spread and RMS speed follow functions of time."""
-    scene = SimpleNamespace(time=0.0, steps=0, case=SimpleNamespace(height=height))
-    scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)))
-    scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time))
+def scripted(spread, speed=lambda t: 1.0, step=0.01, height=0.1, centre=lambda t: 0.0):
+    """A stand-in for a simulation, whose spread, RMS speed and centre of mass follow functions of time; the
+    material is as high at all times."""
+    case = SimpleNamespace(height=height, space_=SimpleNamespace(radial=False))
+    scene = SimpleNamespace(
+        time=0.0, steps=0, case=case, grid=SimpleNamespace(periodic=np.zeros(2, dtype=bool))
+    )
+    scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)), position=np.zeros((3, 2)))
+    scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: height)
     milestones = Milestones(scene)
 
     def go(steps):
         for _ in range(steps):
             scene.particles.velocity[:, 0] = speed(scene.time)
+            scene.particles.position[:, 0] = centre(scene.time)
             milestones.watch()
             scene.time += step
             scene.steps += 1
@@ -143,6 +148,20 @@ class TestRest:
         go(5000)
         assert milestones.at_rest_since is None
         assert milestones.spreading == pytest.approx(0.004)
+
+    def test_material_that_levels_in_a_channel_is_not_at_rest(self):
+        """Its spread has reached both ends of the channel, and it moves at a 200th of its largest speed; its
+        centre goes on with a rate that falls by e in 0.5 s, at first 5 mm/s."""
+        centre = lambda t: -0.5 * 5e-3 * np.exp(-2 * t)  # noqa: E731
+        _, milestones, go = scripted(
+            lambda t: 0.8, lambda t: 1.0 if t < 0.01 else 5e-3 * np.exp(-2 * t), step=1e-3, centre=centre
+        )
+        go(300)
+        assert milestones.at_rest_since is None
+        go(700)
+        # In h/U = 0.1 s it may go a 500th of 0.1 m; it is looked at every 0.02 s.
+        slow = np.log(2.5e-3 * (1 - np.exp(-0.2)) / 2e-4) / 2
+        assert milestones.at_rest_since == pytest.approx(slow, abs=0.06)
 
     def test_an_elastic_wobble_is_rest(self):
         """0.1 mm of the spread to and fro, at 8 mm/s, of what moved at 1 m/s."""

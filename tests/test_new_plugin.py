@@ -18,6 +18,7 @@ LEAST = {
     "body_force": 14,
     "initial_field": 6,
     "sink": 10,
+    "source": 8,
     "particle_field": 9,
 }
 """Tests of a distribution: those of the kit, and one of the case."""

@@ -108,10 +108,10 @@ def test_a_history_keeps_what_it_is_asked_for(registry):
 
 def test_what_no_law_of_the_case_has_is_refused(tmp_path, capsys):
     (tmp_path / "cake.json").write_text(json.dumps(CAKE))
-    arguments = ["--set", 'output.particle_history=["age"]', "--out", tmp_path / "run"]
+    arguments = ["--set", 'output.particle_history=["back_stress"]', "--out", tmp_path / "run"]
     assert status("run", tmp_path / "cake.json", *arguments) == 2
     sentence = one_line(capsys)
-    assert 'output.particle_history.0 is "age"; it must be "position", "velocity",' in sentence
+    assert 'output.particle_history.0 is "back_stress"; it must be "position", "velocity",' in sentence
     assert not (tmp_path / "run").exists()
 
 

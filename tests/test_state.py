@@ -39,6 +39,26 @@ MADE_OF_THE_CASE = {
     "Refiner": {"dim", "acts", "_author", "_grid", "_radial", "_full"},
     "Ledger": {"_gravity", "_downwards", "_along"},
     "Drains": {"_sinks", "_domain", "_lower"},
+    "Sources": {"_names"},
+    "Feed": {
+        "_case",
+        "_name",
+        "_number",
+        "_grid",
+        "_source",
+        "_density",
+        "_group",
+        "_mouth",
+        "_area",
+        "_section",
+        "_length",
+        "_begins",
+        "_ends",
+        "_half",
+        "_depth",
+        "_normal",
+        "_scatter",
+    },
     "Recorder": {"directory"},
     "Ending": {"_until"},
     "History": {"attributes", "_columns", "_axes", "_variables", "_walls"},
@@ -112,7 +132,10 @@ def poison(*roots: Any) -> int:
     for owner in list(of_run(list(roots))):
         for name, value in list(vars(owner).items()):
             own = is_ours(value) or (isinstance(value, list) and value and is_ours(value[0]))
-            own = own or (type(owner).__name__ == "Walls" and name == "walls")  # there may be none
+            own = own or (type(owner).__name__, name) in (
+                ("Walls", "walls"),
+                ("Sources", "feeds"),
+            )  # maybe none
             if own and type(value).__name__ != "Limits":
                 continue
             if name not in MADE_OF_THE_CASE.get(type(owner).__name__, ()):
@@ -234,6 +257,38 @@ def test_every_attribute_of_a_wall_is_restored_or_made_anew(tmp_path, steps):
     advance(simulation, recorder, steps)
     state = {name: value.copy() for name, value in state_of(run_components(recorder, watch)).items()}
     assert simulation.wall_sums()[0].any()
+
+    again, recorder_again, watch_again = a_run(case, tmp_path, goes_on=True)
+    again.advance()
+    poison(again, recorder_again, watch_again)
+    restore(run_components(recorder_again, watch_again), state)
+    advance(simulation, recorder, 1)
+    advance(again, recorder_again, 1)
+    assert_same(simulation, again, "simulation", set())
+    assert_same(recorder, recorder_again, "recorder", set())
+
+
+POURED = {
+    "pump": {
+        "kind": "inlet",
+        "lower": [0, 0.25],
+        "upper": [0.05, 0.25],
+        "direction": "-z",
+        "velocity": 0.5,
+        "material": {"law": "newtonian", "density": 1000, "viscosity": 1, "sound_speed": 5},
+    }
+}
+
+
+def test_every_attribute_of_a_source_is_restored_or_made_anew(tmp_path):
+    """A second material falls onto a body: its rows, and what it gave to the nodes."""
+    changes = [*FLOWING, f"sources={json.dumps(POURED)}", "bodies.0.shape.height=0.2"]
+    case = load_case(CASES / "slump_fast.json", changes)
+    simulation, recorder, watch = a_run(case, tmp_path)
+    recorder.record()
+    advance(simulation, recorder, 5 * CONTROL_INTERVAL)
+    assert simulation.operations.sources.mass_in.sum() > 0
+    state = {name: value.copy() for name, value in state_of(run_components(recorder, watch)).items()}
 
     again, recorder_again, watch_again = a_run(case, tmp_path, goes_on=True)
     again.advance()

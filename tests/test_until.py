@@ -94,8 +94,12 @@ def test_an_interrupted_run_ends_where_it_would_have(runs, tmp_path, monkeypatch
             signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr("mpmkit.running.execution.TOLD_EVERY", 0.0)
+    before = signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # ignored where tests run in the background
     with pytest.raises(Interrupted):
         mpmkit.run(slump({"rest": True, "at_most": 10}), tmp_path / "run", listen=listen)
+    signal.signal(signal.SIGINT, before)
     assert summary(tmp_path / "run")["simulated_time"] < 1.7
     resume(tmp_path / "run")
     same(tmp_path / "run", runs / "rest")

@@ -11,7 +11,22 @@ import numpy as np
 import pytest
 
 from mpmkit.kernels.compile import function
-from mpmkit.kernels.vectors import LANES, lane, load, pack, plus, scale, store, zero
+from mpmkit.kernels.vectors import (
+    LANES,
+    lane,
+    load,
+    load_first,
+    load_twice,
+    multiply,
+    pack,
+    picker,
+    plus,
+    plus_product,
+    scale,
+    spread,
+    store,
+    zero,
+)
 
 
 @function()
@@ -53,6 +68,45 @@ def test_scale_and_plus():
     _combine(x, y, factor, out)
     np.testing.assert_array_equal(out[[0, 2]], [factor * x, factor * y])
     np.testing.assert_allclose(out[1], x + factor * y, rtol=0, atol=1e-15)  # may be one fused operation
+
+
+MIXED = 15, 0, 8, 7, 3, 3, 12, 1
+_mixed, _evens = picker(*MIXED), picker(0, 2, 4, 6, 8, 10, 12, 14)
+
+
+@function()
+def _pick(x, y, factor, out):
+    u, v = load(x, 0), load(y, 0)
+    store(out, 0, _mixed(u, v))
+    store(out, LANES, _evens(u, v))
+    store(out, 2 * LANES, multiply(u, v))
+    store(out, 3 * LANES, plus_product(u, u, v))
+    store(out, 4 * LANES, spread(factor))
+
+
+def test_products_and_picked_lanes():
+    x, y = np.random.default_rng(3).normal(size=(2, LANES))
+    out, both = np.empty((5, LANES)), np.concatenate([x, y])
+    _pick(x, y, 0.7, out)
+    np.testing.assert_array_equal(out[[0, 1, 2]], [both[list(MIXED)], both[::2], x * y])
+    np.testing.assert_allclose(out[3], x + x * y, rtol=0, atol=1e-15)  # may be one fused operation
+    np.testing.assert_array_equal(out[4], 0.7)
+
+
+@function()
+def _load_parts(x, i, out):
+    store(out, 0, load_first(x, i, 3))
+    store(out, LANES, load_first(x, i, 6))
+    store(out, 2 * LANES, load_twice(x, i))
+
+
+def test_load_first_leaves_what_follows_and_load_twice_repeats():
+    x, out = np.arange(40.0), np.empty((3, LANES))
+    x[20:] = np.nan
+    _load_parts(x, 14, out)
+    np.testing.assert_array_equal(out[0], [14, 15, 16, 0, 0, 0, 0, 0])
+    np.testing.assert_array_equal(out[1], [14, 15, 16, 17, 18, 19, 0, 0])
+    np.testing.assert_array_equal(out[2], [14, 15, 16, 17] * 2)
 
 
 def test_pack_and_lane_keep_the_order():

@@ -4,7 +4,7 @@ import copy
 import pickle
 
 import pytest
-from test_case import GOOD, sentence
+from case_sentences import GOOD, sentence
 
 from mpmkit.case import parse_case
 from mpmkit.case.whole_cells import is_whole

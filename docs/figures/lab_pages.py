@@ -2,8 +2,11 @@
 docs/images/lab/*.png, the gallery docs/lab/index.md, and the work of all shipped cases,
 mpmkit/plan/shipped_work.csv.
 
-    python docs/figures/lab_pages.py               # from the runs that there are, in runs/lab
-    python docs/figures/lab_pages.py --run [NAME…] # run these first, default: all
+    python docs/figures/lab_pages.py                      # from the record, and from new runs in runs/lab
+    python docs/figures/lab_pages.py --run [NAME…]        # run these first, default: all
+    python docs/figures/lab_pages.py --run NAME… --fine   # and their fine variants
+
+What a run has found is recorded in docs/data/laboratory.json, so that a page can be written without its run.
 """
 
 from __future__ import annotations
@@ -32,6 +35,9 @@ from mpmkit.solver.time_step import choose_step, limits
 WORDS = json.loads(Path(__file__).with_name("lab_words.json").read_text(encoding="utf-8"))
 """Title, a remark on the closed forms, and what the model leaves out, by the name of the case."""
 RUNS = DOCS.parent / "runs" / "lab"
+RECORD, FINE = DOCS / "data" / "laboratory.json", "-fine"
+STATE = ("particles", "steps", "simulated_time", "at_rest_since")
+"""Figures of every summary that a page shows."""
 PAGES, IMAGES = DOCS / "lab", DOCS / "images" / "lab"
 SHARED = {
     "slump_flow": ["t500_from_lift", "at_rest_since"],
@@ -51,20 +57,57 @@ DEPOSITS = "../theory.md#layers-that-come-to-rest"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--run", nargs="*", metavar="NAME", help="cases to run first; default: all")
+    parser.add_argument("--fine", action="store_true", help="run their fine variants, too")
     chosen = parser.parse_args()
     laboratory = [name for name, path in shipped().items() if path.parent.name == LABORATORY]
     if chosen.run is not None:
         for name in chosen.run or laboratory:
-            command = [sys.executable, "-m", "mpmkit", "run", shipped()[name], "--threads", "1", "--quiet"]
-            subprocess.run([*command, "--out", RUNS / name, "--overwrite"], check=True)
+            run(name, read_json(shipped()[name]))
+            if chosen.fine:
+                run(f"{name}{FINE}", fine(read_json(shipped()[name])))
     PAGES.mkdir(exist_ok=True)
     IMAGES.mkdir(exist_ok=True)
-    done = [name for name in laboratory if (RUNS / name / "summary.json").exists()]
+    for name in laboratory:
+        for variant in ("", FINE):
+            if (RUNS / f"{name}{variant}" / "summary.json").exists():
+                record(name, variant)
+        if (RUNS / name / "summary.json").exists():
+            draw(name)
+    done = [name for name in laboratory if name in recorded()]
     for name in done:
-        draw(name)
         (PAGES / f"{name}.md").write_text(page(name), encoding="utf-8")
     (PAGES / "index.md").write_text(gallery(done), encoding="utf-8")
     write_work(done)
+
+
+def run(name: str, data: dict) -> None:
+    RUNS.mkdir(parents=True, exist_ok=True)
+    case = RUNS / f"{name}.json"
+    case.write_text(json.dumps(data), encoding="utf-8")
+    command = [sys.executable, "-m", "mpmkit", "run", case, "--threads", "1", "--quiet"]
+    subprocess.run([*command, "--out", RUNS / name, "--overwrite"], check=True)
+
+
+def recorded() -> dict[str, dict]:
+    """What runs have found, by the name of the case, with the ending FINE for its fine variant."""
+    return json.loads(RECORD.read_text(encoding="utf-8"))
+
+
+def record(name: str, variant: str) -> None:
+    """Take over from a summary what pages show."""
+    summary = json.loads((RUNS / f"{name}{variant}" / "summary.json").read_text(encoding="utf-8"))
+    units = {key: summary["units"][key] for key in reported(name)}
+    found = {key: summary[key] for key in (*reported(name), *STATE)}
+    work = round(summary["particle_steps_per_second"] * summary["wall_time"])
+    every = recorded() | {name + variant: found | {"particle_steps": work, "units": units}}
+    RECORD.write_text(json.dumps(dict(sorted(every.items())), indent=1) + "\n", encoding="utf-8")
+
+
+def reported(name: str) -> dict[str, str]:
+    """What a case reports: its measurements, and figures of the summary; each with its meaning."""
+    data = read_json(shipped()[name])
+    measured = {key: entry["description"] for key, entry in data.get("measurements", {}).items()}
+    return measured | {key: EXPLAINED[key] for key in SHARED.get(name, [])}
 
 
 def draw(name: str) -> None:
@@ -75,17 +118,11 @@ def draw(name: str) -> None:
         picture.write_bytes((RunDirectory(RUNS / name).report / "outline.png").read_bytes())
 
 
-def summary_of(name: str) -> dict:
-    return json.loads((RUNS / name / "summary.json").read_text(encoding="utf-8"))
-
-
 def page(name: str) -> str:
     """The page of a case, from its file and its run."""
     data = read_json(shipped()[name])
     title, remark, left_out = (WORDS[name][key] for key in ("title", "remark", "left_out"))
-    given, summary = parameters(data), summary_of(name)
-    reported = {key: entry["description"] for key, entry in data.get("measurements", {}).items()}
-    reported |= {key: EXPLAINED[key] for key in SHARED.get(name, [])}
+    given, summary = parameters(data), recorded()[name]
     lines = [f"# {title}", "", data["description"], "", "```", f"mpmkit init {name} --set yield_stress=…"]
     lines += [f"mpmkit run {name}.json", "```", "", "## Apparatus and material", ""]
     lines += table(["parameter", "value", "meaning"], [apparatus(key, entry) for key, entry in given.items()])
@@ -94,7 +131,7 @@ def page(name: str) -> str:
         ["reported", "value", "meaning"],
         [
             (f"`{key}`", shown(summary[key], summary["units"][key]), meaning)
-            for key, meaning in reported.items()
+            for key, meaning in reported(name).items()
         ],
     )
     lines += ["", f"{summary['particles']:,} particles, {summary['steps']:,} steps, to t = "
@@ -104,6 +141,8 @@ def page(name: str) -> str:
         head = ["closed form", "its value", "the run", "difference"]
         lines += table(head, list(held(name, given, summary)))
         lines.append("")
+    if name + FINE in recorded():
+        lines += [*finer(name, parameters(fine(data)), recorded()[name + FINE]), ""]
     lines += [remark, ""] if remark else []
     if any(formula.words == THIN for formula in FORMULAS.get(name, [])):
         lines += [
@@ -135,6 +174,30 @@ def held(name: str, given: dict[str, Parameter], summary: dict):
         )
         difference = f"{100 * (found / said - 1):+.1f} %" if said else "–"
         yield formula.words, shown(said, unit), shown(found, unit), difference
+
+
+def finer(name: str, given: dict[str, Parameter], summary: dict) -> list[str]:
+    """A paragraph on the run of the fine variant."""
+    changed = [key for key, entry in read_json(shipped()[name])["parameters"].items() if "fine" in entry]
+    variant = ", ".join(f"`{key}` {shown(given[key].value, given[key].unit)}" for key in changed)
+    key = measured_first(name)
+    found, coarse = (which[key] for which in (summary, recorded()[name]))
+    lines = [
+        f"The fine variant ({variant}; {summary['particles']:,} particles at the end, {summary['steps']:,} "
+        f"steps) gives `{key}` {shown(found, summary['units'][key])}; the run above is "
+        f"{100 * (coarse / found - 1):+.1f} % from it."
+    ]
+    if name in FORMULAS:
+        *_, difference = next(held(name, given, summary))
+        lines[0] += f" The difference of the fine variant to the first closed form is {difference}."
+    return lines
+
+
+def measured_first(name: str) -> str:
+    """The number for which a test is done."""
+    if name in FORMULAS:
+        return FORMULAS[name][0].measured
+    return next(iter(read_json(shipped()[name])["measurements"]))
 
 
 def state(summary: dict) -> str:
@@ -169,10 +232,8 @@ def gallery(done: list[str]) -> str:
     ]
     rows = []
     for name in done:
-        summary, given = summary_of(name), parameters(read_json(shipped()[name]))
-        measured = next(iter(read_json(shipped()[name])["measurements"]))
-        if name in FORMULAS:
-            measured = FORMULAS[name][0].measured
+        summary, given = recorded()[name], parameters(read_json(shipped()[name]))
+        measured = measured_first(name)
         found = f"{measured}: {shown(summary[measured], summary['units'][measured])}"
         first = next(held(name, given, summary), None) if name in FORMULAS else None
         rows.append(
@@ -196,18 +257,22 @@ def write_work(done: list[str]) -> None:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["name", "variant", "dimensions", "steps", "particle_steps"])
         for name, path in shipped().items():
-            data = read_json(path)
-            steps, particle_steps = expected = first_step(load_case(path))
+            data, case = read_json(path), load_case(path)
+            steps, particle_steps = expected = first_step(case)
             if name in done:
-                summary = summary_of(name)
-                steps = summary["steps"]
-                particle_steps = summary["particle_steps_per_second"] * summary["wall_time"]
-            dimensions = load_case(path).space_.dim
-            rows.writerow([name, "coarse", dimensions, steps, round(particle_steps)])
+                steps, particle_steps = work(name)
+            rows.writerow([name, "coarse", case.space_.dim, steps, round(particle_steps)])
             if has_fine(data):
                 finer = first_step(parse_case(fine(data)))
-                row = (steps * finer[0] / expected[0], particle_steps * finer[1] / expected[1])
-                rows.writerow([name, "fine", dimensions, *(round(value) for value in row)])
+                row = [steps * finer[0] / expected[0], particle_steps * finer[1] / expected[1]]
+                if name + FINE in recorded():
+                    row = list(work(name + FINE))
+                rows.writerow([name, "fine", case.space_.dim, *(round(value) for value in row)])
+
+
+def work(name: str) -> tuple[int, int]:
+    """Steps and particle-steps of a recorded run."""
+    return recorded()[name]["steps"], recorded()[name]["particle_steps"]
 
 
 def first_step(case) -> tuple[int, int]:
@@ -216,7 +281,7 @@ def first_step(case) -> tuple[int, int]:
     fastest = max(body.largest_speed for body in case.bodies)
     waves = [(group, group.wave_speed) for group in groups]
     step, _ = choose_step(case.scheme, limits(waves, case.grid.cell_size, fastest, case.scale.rate))
-    steps = round(case.until / step)
+    steps = round(case.end / step)
     return steps, steps * expected_particles(case)
 
 

@@ -21,11 +21,11 @@ from pydantic import (
 )
 from pydantic_core import PydanticKnownError
 
-from ..contracts import ConstitutiveLaw, Plugin
+from ..contracts import ConstitutiveLaw, Plugin, Source
 from ..registry import Registry, installed
 from .consistency import check
 from .html import case_html
-from .model import Body, Case, Material, Scheme, Wall
+from .model import Body, Case, Inflow, Material, Scheme, Wall
 from .output import OutputSettings
 
 
@@ -97,9 +97,14 @@ def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
     return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
 
 
+def _of_names(annotation: Any) -> Any:
+    """Annotation of a field that holds values under names chosen by the user."""
+    return dict[str, annotation]
+
+
 def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
     """Annotation of a field that holds plug-ins under names chosen by the user."""
-    return dict[str, _one_of(kind, registry.of_kind(kind), "kind")], field  # type: ignore[misc]
+    return _of_names(_one_of(kind, registry.of_kind(kind), "kind")), field
 
 
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
@@ -117,17 +122,35 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
     )
 
 
+def _inflow_model(source: type[Source], material: Any) -> type[Inflow]:
+    own_fields = {name: (field.annotation, field) for name, field in source.model_fields.items()}
+    base = type("Inflow", (Inflow,), {"source_class": source, "__module__": Inflow.__module__})
+    return create_model(
+        f"Inflow_{source.__name__}",
+        __base__=base,
+        __doc__=source.__doc__,
+        kind=(Literal[source.name], ...),
+        material=(material, Inflow.model_fields["material"]),
+        **own_fields,  # type: ignore[call-overload]
+    )
+
+
 @lru_cache(maxsize=4)
 def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
     laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
+    material = _one_of("law", laws, "law")
     body = create_model(
         "Body",
         __base__=Body,
         __doc__=Body.__doc__,
-        material=(_one_of("law", laws, "law"), Body.model_fields["material"]),
+        material=(material, Body.model_fields["material"]),
         initial=_by_name(registry, "initial_field", Body.model_fields["initial"]),
     )
+    inflows = {
+        name: _inflow_model(source, material)  # type: ignore[arg-type]
+        for name, source in registry.of_kind("source").items()
+    }
     scheme = create_model(
         "Scheme",
         __base__=Scheme,
@@ -163,6 +186,7 @@ def case_model(registry: Registry) -> type[Case]:
         __doc__=Case.__doc__,
         bodies=(list[body], Case.model_fields["bodies"]),  # type: ignore[valid-type]
         walls=(dict[str, wall], Case.model_fields["walls"]),  # type: ignore[valid-type]
+        sources=(_of_names(_one_of("source", inflows, "kind")), Case.model_fields["sources"]),
         forces=_by_name(registry, "body_force", Case.model_fields["forces"]),
         sinks=_by_name(registry, "sink", Case.model_fields["sinks"]),
         scheme=(scheme, Field(default={}, validate_default=True, description="the numerical method")),

@@ -24,6 +24,7 @@ from .initial_fields import check_initial_fields
 from .measurement_rules import check_measurements
 from .model import Case, Material
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
+from .sources import check_inflows, check_mouths, source_columns
 from .state_variables import TAKEN, former_names, state_variables
 from .synonyms import nearest
 from .walls import NAME, check_walls
@@ -47,6 +48,14 @@ def check(case: Case) -> None:
     check_forces(case)
     _check_domain(case)
     _check_faces(case)
+    if not case.bodies and not case.sources:
+        given = "[]" if "bodies" in case.model_fields_set else "missing"
+        raise ValueError(
+            f"bodies is {given}; it must be a list of one or more objects, unless the case has sources"
+        )
+    for name, inflow in case.sources.items():
+        _check_particles_per_cell(f"sources.{name}.particles_per_cell", inflow.particles_per_cell, case)
+    check_mouths(case)
     check_symmetry_of_forces(case)
     for number, body in enumerate(case.bodies):
         where = f"bodies.{number}"
@@ -61,6 +70,10 @@ def check(case: Case) -> None:
             raise ValueError(f"{where}.shape: {error}") from None
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
+    for name, inflow in case.sources.items():
+        _check_sound_speed(f"sources.{name}.material.sound_speed", inflow.material, case)
+        _check_wave_speed(f"sources.{name}.material", inflow.material, case)
+    check_inflows(case)
     _check_sinks(case)
     _check_measured(case)
     _check_until(case)
@@ -105,7 +118,13 @@ def _check_measured(case: Case) -> None:
 
 
 def _check_until(case: Case) -> None:
-    columns = [*COLUMNS, *force_columns(case), *drain_columns(case), *diagnostic_columns(case)]
+    columns = [
+        *COLUMNS,
+        *source_columns(case),
+        *force_columns(case),
+        *drain_columns(case),
+        *diagnostic_columns(case),
+    ]
     scalars = [column.name for column in columns if not column.component and not column.dimension]
     for name in case.until.variables if isinstance(case.until, Until) else ():
         if name not in scalars:
@@ -266,7 +285,7 @@ def _check_wave_speed(field: str, material: Material, case: Case) -> None:
 def _check_time_step(case: Case) -> None:
     """Check that the step has a limit: the waves of the materials, or else their viscosity."""
     ignored = case.scheme.time_step.ignore
-    laws = [body.material.constitutive_law for body in case.bodies]
+    laws = [material.constitutive_law for material in case.materials.values()]
     with blaming_plugins([("law", law) for law in laws]):
         viscous = any(
             require_number(law, "largest_viscosity", law.largest_viscosity(1.0)) > 0 for law in laws

@@ -44,12 +44,13 @@ def _few_particles(case: Case) -> Iterator[str]:
     """3-D fluids with too few particles per cell to keep their yield stress when particles are disordered."""
     if case.space_.dim < 3 or not case.scheme.redistribution.equal_boxes:
         return
-    for number, body in enumerate(case.bodies):
+    for where, body in zip(case.materials, case.filled, strict=True):
         count = math.prod(body.particles_along_axes(case.space_.dim))
         if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
             yield (
-                f"bodies.{number} has {count} particles a cell: in three dimensions a fluid that is sheared "
-                f"far flows too easily with fewer than {ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
+                f"{where.removesuffix('.material')} has {count} particles a cell: in three dimensions a "
+                "fluid that is sheared far flows too easily with fewer than "
+                f"{ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
                 "with 8, 0.6 % with 27); see particles_per_cell"
             )
 
@@ -59,7 +60,7 @@ def _needless(case: Case) -> Iterator[str]:
     scheme = case.scheme
     if not scheme.redistribution.equal_boxes:
         return
-    fluids = [body for body in case.bodies if body.material.constitutive_law.uses_equation_of_state]
+    fluids = [one for one in case.filled if one.material.constitutive_law.uses_equation_of_state]
     kept = f"scheme.redistribution '{scheme.redistribution.name}' keeps boxes of fluids of equal sides"
     if scheme.splitting and fluids:
         name = scheme.refinement.name

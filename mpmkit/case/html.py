@@ -42,6 +42,8 @@ def _rows(case: Case) -> Iterator[tuple[str, str]]:
     yield "faces", ", ".join(faces) or "open"
     for number, body in enumerate(case.bodies):
         yield f"bodies.{number}", f"{_named(body.shape, 'kind')}, {_material(body.material)}"
+    for name, inflow in case.sources.items():
+        yield f"sources.{name}", f"{inflow.kind}, {_material(inflow.material)}"
     for name, wall in case.walls.items():
         yield f"walls.{name}", f"{_said(wall.surface)}, {_said(wall.contact)}"
     scheme = case.scheme

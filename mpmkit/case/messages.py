@@ -30,7 +30,7 @@ MOST_EXAMINED = 100
 MEASURED = {"diagnostics": "diagnostic", "fields": "particle_field"}
 """Kinds of the plug-ins of ``output``, by their keys."""
 
-BY_NAME: dict[str | int, str] = {"forces": "body_force", "sinks": "sink"}
+BY_NAME: dict[str | int, str] = {"forces": "body_force", "sinks": "sink", "sources": "source"}
 """Kinds of the plug-ins that a case has by names, by the key of the case."""
 
 Path = tuple[str | int, ...]
@@ -169,7 +169,7 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
     if path[0] == "bodies" and path[2:3] == ("initial",):
         kinds = ["initial_field"]
-    if path[0] in BY_NAME:
+    if path[0] in BY_NAME and not kinds:  # a source has a law as well
         kinds = [BY_NAME[path[0]]]
     if path[0] == "output":
         kinds = [MEASURED[key] for key in path[1:2] if key in MEASURED]

@@ -11,7 +11,7 @@ from itertools import product
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
+from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, model_validator
 
 from ..contracts import (
     Beginning,
@@ -20,7 +20,9 @@ from ..contracts import (
     Contact,
     EquationOfState,
     InitialField,
+    Mouth,
     Sink,
+    Source,
     Surface,
     quantity,
 )
@@ -137,12 +139,7 @@ class Body(Model):
 
     def particles_along_axes(self, dim: int) -> tuple[int, ...]:
         """Particles along each axis of a full cell."""
-        given = self.particles_per_cell
-        if given is None:
-            return (2,) * dim
-        if isinstance(given, list):
-            return tuple(given)
-        return (round(given ** (1 / dim)),) * dim
+        return particles_along_axes(self.particles_per_cell, dim)
 
     @property
     def largest_speed(self) -> float:
@@ -151,6 +148,51 @@ class Body(Model):
             return 0.0
         vector = self.velocity if isinstance(self.velocity, list) else self.velocity.amplitude
         return math.hypot(*vector)
+
+
+def particles_along_axes(per_cell: int | list[int] | None, dim: int) -> tuple[int, ...]:
+    """Particles along each axis of a full cell, of their number in it as in a case."""
+    if per_cell is None:
+        return (2,) * dim
+    if isinstance(per_cell, list):
+        return tuple(per_cell)
+    return (round(per_cell ** (1 / dim)),) * dim
+
+
+class Inflow(Model):
+    """A source with its material."""
+
+    kind: str = Field(description="name of the source")
+    material: Material = Field(description="what comes in")
+    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
+        "1",
+        "particles in a full cell (a square or cubic number), or their number along each axis; "
+        "default: 2 along each axis",
+        default=None,
+    )
+
+    source_class: ClassVar[type[Source]]
+
+    @model_validator(mode="after")
+    def _is_a_source(self) -> Inflow:
+        """Rules of the source that span several of its fields."""
+        try:
+            self.source  # noqa: B018
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            raise ValueError(str(first.get("ctx", {}).get("error", first["msg"]))) from None
+        return self
+
+    @cached_property
+    def source(self) -> Source:
+        """The source with its parameters."""
+        return self.source_class.model_validate(
+            {name: getattr(self, name) for name in self.source_class.model_fields}
+        )
+
+    def particles_along_axes(self, dim: int) -> tuple[int, ...]:
+        """Particles along each axis of a full cell."""
+        return particles_along_axes(self.particles_per_cell, dim)
 
 
 class TimeStep(Model):
@@ -218,10 +260,17 @@ class Case(Model):
         default=None,
     )
     grid: Grid = Field(description="cells, domain and faces")
-    bodies: list[Body] = Field(min_length=1, description="the bodies of material at the start")
+    bodies: list[Body] = Field(
+        default=[], description="the bodies of material at the start; there may be none if there are sources"
+    )
     walls: dict[str, Wall] = Field(
         default={},
         description="walls beside the faces of the grid, each with a name of letters, digits, '_' and '-'",
+        json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
+    )
+    sources: dict[str, Inflow] = Field(
+        default={},
+        description="where material comes into the scene, each by a name of letters, digits, '_' and '-'",
         json_schema_extra={"propertyNames": {"pattern": "^[A-Za-z0-9_-]+$"}},
     )
     forces: dict[str, BodyForce] = Field(
@@ -270,6 +319,41 @@ class Case(Model):
             vector[-1] = -STANDARD_GRAVITY
         return vector
 
+    @property
+    def materials(self) -> dict[str, Material]:
+        """The material of each body and source, by its place in the case file."""
+        bodies = {f"bodies.{number}.material": body.material for number, body in enumerate(self.bodies)}
+        return bodies | {f"sources.{name}.material": one.material for name, one in self.sources.items()}
+
+    @property
+    def filled(self) -> list[Body | Inflow]:
+        """The bodies, then the sources: particles are numbered by it, see ``Particles.body``."""
+        return [*self.bodies, *self.sources.values()]
+
+    @cached_property
+    def mouths(self) -> dict[str, Mouth]:
+        """The section of each source at the start."""
+        return {name: one.source.mouth(self.space_, self.domain_bounds) for name, one in self.sources.items()}
+
+    def mouth_area(self, name: str) -> float:
+        """Area of the section of a source that is in the domain, m²; 1 m deep in plane strain."""
+        mouth, (lower, upper) = self.mouths[name], self.domain_bounds
+        centre, half = np.array(mouth.centre), np.array(mouth.half_width)
+        low, high = np.maximum(centre - half, lower), np.minimum(centre + half, upper)
+        across = [a for a in range(self.space_.dim) if a != mouth.axis]
+        if self.space_.radial:
+            return float(np.pi * (high[0] ** 2 - low[0] ** 2))
+        part = float(np.prod((high - low)[across]))
+        return part * np.pi / 4 if mouth.round else part
+
+    def source_speed(self, name: str, t0: float, t1: float) -> float:
+        """Upper bound of the speed at which a source brings material in between two times, m/s."""
+        one, area = self.sources[name], self.mouth_area(name)
+        begins, ends = one.source.spell(area, one.material.density)
+        if t1 < begins or t0 >= ends:
+            return 0.0
+        return one.source.fastest(max(t0, begins), min(t1, ends), area, one.material.density)
+
     @cached_property
     def gravity_vector(self) -> np.ndarray:
         """Constant gravity, m/s², ``(dim,)``: that of the key and of constant forces."""
@@ -307,10 +391,20 @@ class Case(Model):
 
     @cached_property
     def height(self) -> float:
-        """Extent h of all bodies together along gravity, m."""
-        bounds = [body.shape.bounds(self.space_) for body in self.bodies]
-        ends = np.array([np.sort(self._downwards * np.array(b), axis=0).sum(axis=1) for b in bounds])
-        return float(ends[:, 1].max() - ends[:, 0].min())
+        """Extent h of all bodies together along gravity, m.
+
+        With sources, also from their mouths to the end of the domain that gravity pulls to, and at least the
+        width of a mouth.
+        """
+        bounds = [np.array(body.shape.bounds(self.space_)) for body in self.bodies]
+        for mouth in self.mouths.values():
+            centre, half = np.array(mouth.centre), np.array(mouth.half_width)
+            lower, upper = self.domain_bounds
+            bounds.append(np.array([centre - half, np.where(self._downwards > 0, upper, lower)]))
+            bounds.append(np.array([centre + half, centre + half]))
+        ends = np.array([np.sort(self._downwards * b, axis=0).sum(axis=1) for b in bounds])
+        widths = [2 * max(mouth.half_width) for mouth in self.mouths.values()]
+        return max(float(ends[:, 1].max() - ends[:, 0].min()), *widths, 0.0)
 
     @cached_property
     def _downwards(self) -> np.ndarray:
@@ -334,10 +428,13 @@ class Case(Model):
     @cached_property
     def largest_energy(self) -> float:
         """Largest initial energy of a particle, J/kg: kinetic, and potential above the lowest particle."""
-        fastest = max((self._largest_speed(body) for body in self.bodies), default=0.0)
+        fastest = max(
+            [0.0, *map(self.speed_at_start, self.bodies)]
+            + [self.source_speed(name, 0.0, self.end) for name in self.sources]
+        )
         return self.energy_of_fall + fastest**2 / 2
 
-    def _largest_speed(self, body: Body) -> float:
+    def speed_at_start(self, body: Body) -> float:
         """Largest speed of a body at the start, m/s; of a field that of samples."""
         if "velocity" not in body.initial:
             return body.largest_speed
@@ -363,8 +460,10 @@ class Case(Model):
         of_gravity = float(np.linalg.norm(self.gravity_vector)) * self.height
         if not self.varying_forces:
             return of_gravity
-        lower, upper = zip(*(body.shape.bounds(self.space_) for body in self.bodies), strict=True)
-        extent = np.max(upper, axis=0) - np.min(lower, axis=0)
+        extent = self.domain_bounds[1] - self.domain_bounds[0]
+        if not self.sources:
+            lower, upper = zip(*(body.shape.bounds(self.space_) for body in self.bodies), strict=True)
+            extent = np.max(upper, axis=0) - np.min(lower, axis=0)
         return of_gravity + float(self.largest_forces @ np.where(self._periodic, self.height, extent))
 
     def sound_speed(self, material: Material) -> float | None:

@@ -60,7 +60,9 @@ def _points(case: Case, columns: int, rows: int) -> np.ndarray:
 
 def _middle_of_bodies(case: Case) -> float:
     bounds = [body.shape.bounds(case.space_) for body in case.bodies]
-    return (min(low[1] for low, _ in bounds) + max(high[1] for _, high in bounds)) / 2
+    middles = [mouth.centre[1] for mouth in case.mouths.values()]
+    ends = [low[1] for low, _ in bounds] + [high[1] for _, high in bounds] + middles
+    return (min(ends) + max(ends)) / 2
 
 
 def _filled(inside: np.ndarray, colour: str) -> str:

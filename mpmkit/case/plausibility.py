@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..registry.audit import forces
-from .model import STANDARD_GRAVITY, Body, Case
+from .model import STANDARD_GRAVITY, Case, Material
 
 EARTH = 0.1
 """Relative difference from 9.81 m/s² up to which gravity is the earth's."""
@@ -34,7 +34,7 @@ MACH_NUMBERS = (1 / 500, 0.5)
 
 def implausible(case: Case) -> Iterator[str]:
     """A sentence for each value that is probably not in SI units: the value, and the usual range."""
-    strength = float(np.linalg.norm(case.gravity_vector))
+    strength = float(np.linalg.norm(case.gravity_at_start))
     if strength > STRONGEST:
         yield f"gravity is {strength:.4g} m/s²; on earth it is 9.81 m/s²: is it in mm/s²?"
     elif abs(strength / IN_CENTIMETRES - 1) < CLOSE:
@@ -43,8 +43,8 @@ def implausible(case: Case) -> Iterator[str]:
     if abs(strength / STANDARD_GRAVITY - 1) < EARTH:
         yield from _on_earth(case, strength)
     fastest = (2 * case.largest_energy) ** 0.5
-    for number, body in enumerate(case.bodies):
-        yield from _sound(f"bodies.{number}.material", case, body, fastest)
+    for where, material in case.materials.items():
+        yield from _sound(where, material, fastest)
 
 
 def _forces(case: Case) -> Iterator[str]:
@@ -63,11 +63,10 @@ def _on_earth(case: Case, strength: float) -> Iterator[str]:
     height = case.height
     if not SIZES[0] <= height <= SIZES[1]:
         yield (
-            f"the bodies are {height:.4g} m high; usual is {SIZES[0]:g} to {SIZES[1]:g} m: "
-            "are the lengths in metres?"
+            f"the {'scene is' if case.sources else 'bodies are'} {height:.4g} m high; usual is {SIZES[0]:g} "
+            f"to {SIZES[1]:g} m: are the lengths in metres?"
         )
-    for number, body in enumerate(case.bodies):
-        where, material = f"bodies.{number}.material", body.material
+    for where, material in case.materials.items():
         if not DENSITIES[0] <= material.density <= DENSITIES[1]:
             yield (
                 f"{where}.density is {material.density:.4g} kg/m³; usual is {DENSITIES[0]:g} to "
@@ -100,9 +99,9 @@ def _viscosity(material: Any) -> tuple[str, float] | None:
     return None
 
 
-def _sound(where: str, case: Case, body: Body, fastest: float) -> Iterator[str]:
+def _sound(where: str, material: Material, fastest: float) -> Iterator[str]:
     """Check of a sound speed in m/s against the speed that the scene can reach."""
-    speed = body.material.sound_speed
+    speed = material.sound_speed
     if not isinstance(speed, float) or fastest == 0 or MACH_NUMBERS[0] <= fastest / speed <= MACH_NUMBERS[1]:
         return
     effect = "many steps for nothing" if speed > fastest else "the material is compressed as it flows"

@@ -16,14 +16,15 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
     """Kind and plug-in, for every plug-in that the case uses."""
     scheme = case.scheme
     used = [(kind, getattr(scheme, kind)) for kind in SCHEME]
-    for body in case.bodies:
-        law = body.material.constitutive_law
+    for material in case.materials.values():
+        law = material.constitutive_law
         used.append(("law", law))
         if law.uses_equation_of_state:
-            used.append(("equation_of_state", body.material.equation_of_state))
-        used += [("initial_field", field) for field in body.initial.values()]
+            used.append(("equation_of_state", material.equation_of_state))
+    used += [("initial_field", field) for body in case.bodies for field in body.initial.values()]
     for wall in case.walls.values():
         used += [("surface", wall.surface), ("contact", wall.contact)]
+    used += [("source", one.source) for one in case.sources.values()]
     used += [("body_force", force) for force in case.forces.values()]
     used += [("sink", sink) for sink in case.sinks.values()]
     used += [("diagnostic", diagnostic) for diagnostic in case.output.diagnostics.values()]

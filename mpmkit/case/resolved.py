@@ -21,6 +21,8 @@ def resolved(case: Case) -> dict[str, Any]:
         _fill_base(entry["shape"], case)
         if "velocity" not in body.initial:
             entry["velocity"] = entry["velocity"] or [0.0] * case.space_.dim
+    for inflow, entry in zip(case.sources.values(), data["sources"].values(), strict=True):
+        entry["particles_per_cell"] = list(inflow.particles_along_axes(case.space_.dim))
     return data
 
 

@@ -12,7 +12,9 @@ from ..output.variables import PARTICLE_VARIABLES, ParticleVariable
 from ..registry.blame import blaming_plugins
 from .model import Case
 
-TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", "component"}
+SINCE_0_10 = {"age"}
+"""Particle fields that a state variable or a field of a case may be called as well; theirs is then meant."""
+TAKEN = {*PARTICLE_VARIABLES, "speed", "half_size", "body", "particle", "time", "component"} - SINCE_0_10
 """Names of the other fields in frames and histories."""
 
 
@@ -35,7 +37,8 @@ def former_names(case: Case) -> dict[str, str]:
         for law in laws_of(case)
         for name in law.state
     }
-    return {former: name for former, name in names.items() if former not in PARTICLE_VARIABLES}
+    taken = PARTICLE_VARIABLES.keys() - SINCE_0_10
+    return {former: name for former, name in names.items() if former not in taken}
 
 
 def state_variables(case: Case) -> dict[str, ParticleVariable]:
@@ -78,7 +81,7 @@ def particle_variables(case: Case) -> dict[str, ParticleVariable]:
         name: replace(states[now], trailing=tuple(f"{name}_component" for _ in states[now].trailing))
         for name, now in former_names(case).items()
     }
-    return former | states | fields | PARTICLE_VARIABLES
+    return PARTICLE_VARIABLES | former | states | fields
 
 
 def flat(shape: tuple[int, ...]) -> tuple[int, ...]:
@@ -87,5 +90,5 @@ def flat(shape: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def laws_of(case: Case) -> Iterable[ConstitutiveLaw]:
-    """The law of each body."""
-    return (body.material.constitutive_law for body in case.bodies)
+    """The law of each body and source."""
+    return (material.constitutive_law for material in case.materials.values())

@@ -24,6 +24,7 @@ KINDS = [
     "body_force",
     "initial_field",
     "sink",
+    "source",
     "diagnostic",
     "particle_field",
 ]

@@ -14,10 +14,12 @@ from .initial_field import Beginning, InitialField
 from .law import ConstitutiveLaw, Kinematics, StateVariable
 from .operations import Operations
 from .order import UpdateOrder
+from .rate import Rate, RateTable
 from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
@@ -43,17 +45,21 @@ __all__ = [
     "InitialField",
     "Kinematics",
     "Lattice",
+    "Mouth",
     "Observed",
     "Operations",
     "ParticleField",
     "PlacedSurface",
     "Plugin",
+    "Rate",
+    "RateTable",
     "Redistributing",
     "Redistribution",
     "Refinement",
     "Refining",
     "ShapeFunction",
     "Sink",
+    "Source",
     "Space",
     "StateVariable",
     "Surface",

@@ -22,6 +22,7 @@ from .redistribution import Redistribution
 from .refinement import Refinement
 from .shape import ShapeFunction
 from .sink import Sink
+from .source import Source
 from .surface import Surface
 from .velocity import VelocityUpdate
 from .volumetric import VolumetricTreatment
@@ -106,6 +107,11 @@ def mpmkit_sinks() -> Iterable[type[Sink]]:  # type: ignore[empty-body]
     """Sinks of this module."""
 
 
+@hookspec
+def mpmkit_sources() -> Iterable[type[Source]]:  # type: ignore[empty-body]
+    """Sources of this module."""
+
+
 KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "shape": ("mpmkit_shape_functions", ShapeFunction),
     "order": ("mpmkit_update_orders", UpdateOrder),
@@ -120,6 +126,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "body_force": ("mpmkit_body_forces", BodyForce),
     "initial_field": ("mpmkit_initial_fields", InitialField),
     "sink": ("mpmkit_sinks", Sink),
+    "source": ("mpmkit_sources", Source),
     "diagnostic": ("mpmkit_diagnostics", Diagnostic),
     "particle_field": ("mpmkit_particle_fields", ParticleField),
 }

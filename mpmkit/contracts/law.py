@@ -79,6 +79,9 @@ class Kinematics:
     """``(n, 3, 3)``, F, if the law asks for it."""
     sound_speed: float | None = None
     """Sound speed of the equation of state, m/s; None for a law that computes its own pressure."""
+    age: np.ndarray | None = None
+    """``(n,)``, time since the material came in through a source, or since the start, s, if the law asks for
+    it."""
     time: float = 0.0
     """Time at the start of the step, s."""
 
@@ -111,6 +114,8 @@ class ConstitutiveLaw(Plugin):
 
     uses_equation_of_state: ClassVar[bool] = True
     needs_deformation_gradient: ClassVar[bool] = False
+    needs_age: ClassVar[bool] = False
+    """Whether ``kinematics.age`` is given to it, as for a material that sets."""
     state: ClassVar[Mapping[str, StateVariable]] = {}
     passive: ClassVar[bool] = True
     """Whether it only stores and dissipates energy. False for a law that does work, such as one that swells;

@@ -57,7 +57,7 @@ def yield_stress_of_spread(case: Case, diameter: float | None) -> tuple[float, s
         return None
     body, radius = case.bodies[0], diameter / 2
     volume = body.shape.volume(case.space_)
-    weight = body.material.density * float(np.linalg.norm(case.gravity_vector)) * volume
+    weight = body.material.density * float(np.linalg.norm(case.gravity_at_start)) * volume
     face = case.grid.faces.get(f"{case.space_.axes[-1]}_min")
     floor = getattr(face, "kind", face)
     if floor == "stick":

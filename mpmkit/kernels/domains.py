@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, kernel
+from .elementary import SMALLEST, power
+from .tensors import shear_squared
 
 
 @kernel()
@@ -40,18 +43,26 @@ def hold_volume(L, volume, position, radial, box, half_size, follows, largest):
     """
     n, dim = box.shape
     for c in prange(chunk_count(n)):
+        begin, end = c * CHUNK, min(n, (c + 1) * CHUNK)
+        size = volume[begin:end].copy()
+        if radial:
+            for k in range(len(size)):
+                size[k] /= 2 * math.pi * position[begin + k, 0]
+        half = np.empty(len(size))
+        if dim == 2:
+            for k in range(len(size)):
+                half[k] = 0.5 * math.sqrt(size[k])
+        else:
+            for k in range(len(size)):
+                half[k] = 0.5 * power(max(size[k], SMALLEST), 1 / 3)
         most = 0.0
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
-            xx, yy, zz = L[p, 0, 0] - mean, L[p, 1, 1] - mean, L[p, 2, 2] - mean
-            yz, xz, xy = L[p, 1, 2] + L[p, 2, 1], L[p, 0, 2] + L[p, 2, 0], L[p, 0, 1] + L[p, 1, 0]
-            most = max(most, 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy)
-            size = volume[p] / (2 * math.pi * position[p, 0]) if radial else volume[p]
-            half = 0.5 * (math.sqrt(size) if dim == 2 else size ** (1 / 3))
+        for p in range(begin, end):
+            side = half[p - begin] if volume[p] > 0.0 else math.nan
             for a in range(dim):
-                box[p, a] = half
+                box[p, a] = side
                 if follows:
-                    half_size[p, a] = half
+                    half_size[p, a] = side
+            most = max(most, shear_squared(L, p))
         largest[c] = math.sqrt(most)
 
 

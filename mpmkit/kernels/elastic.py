@@ -6,7 +6,14 @@ import math
 
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
+from .compile import CHUNK, chunk_count, inline, kernel
+from .elementary import fused
+
+
+@inline()
+def dot(a, b, c, x, y, z):
+    """a x + b y + c z."""
+    return fused(a, x, fused(b, y, c * z))
 
 
 @kernel()
@@ -31,31 +38,31 @@ def elastic_trial(L, dt, shear_modulus, stress, shear_stress):
             xx, yy, zz = stress[p, 0], stress[p, 1], stress[p, 2]
             yz, xz, xy = stress[p, 3], stress[p, 4], stress[p, 5]
             t00, t01, t02 = (
-                r00 * xx + r01 * xy + r02 * xz,
-                r00 * xy + r01 * yy + r02 * yz,
-                r00 * xz + r01 * yz + r02 * zz,
+                dot(r00, r01, r02, xx, xy, xz),
+                dot(r00, r01, r02, xy, yy, yz),
+                dot(r00, r01, r02, xz, yz, zz),
             )
             t10, t11, t12 = (
-                r10 * xx + r11 * xy + r12 * xz,
-                r10 * xy + r11 * yy + r12 * yz,
-                r10 * xz + r11 * yz + r12 * zz,
+                dot(r10, r11, r12, xx, xy, xz),
+                dot(r10, r11, r12, xy, yy, yz),
+                dot(r10, r11, r12, xz, yz, zz),
             )
             t20, t21, t22 = (
-                r20 * xx + r21 * xy + r22 * xz,
-                r20 * xy + r21 * yy + r22 * yz,
-                r20 * xz + r21 * yz + r22 * zz,
+                dot(r20, r21, r22, xx, xy, xz),
+                dot(r20, r21, r22, xy, yy, yz),
+                dot(r20, r21, r22, xz, yz, zz),
             )
             g = shear_modulus * dt
             mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
-            xx = t00 * r00 + t01 * r01 + t02 * r02 + 2 * g * (L[p, 0, 0] - mean)
-            yy = t10 * r10 + t11 * r11 + t12 * r12 + 2 * g * (L[p, 1, 1] - mean)
-            zz = t20 * r20 + t21 * r21 + t22 * r22 + 2 * g * (L[p, 2, 2] - mean)
-            yz = t10 * r20 + t11 * r21 + t12 * r22 + g * (L[p, 1, 2] + L[p, 2, 1])
-            xz = t00 * r20 + t01 * r21 + t02 * r22 + g * (L[p, 0, 2] + L[p, 2, 0])
-            xy = t00 * r10 + t01 * r11 + t02 * r12 + g * (L[p, 0, 1] + L[p, 1, 0])
+            xx = fused(2 * g, L[p, 0, 0] - mean, dot(t00, t01, t02, r00, r01, r02))
+            yy = fused(2 * g, L[p, 1, 1] - mean, dot(t10, t11, t12, r10, r11, r12))
+            zz = fused(2 * g, L[p, 2, 2] - mean, dot(t20, t21, t22, r20, r21, r22))
+            yz = fused(g, L[p, 1, 2] + L[p, 2, 1], dot(t10, t11, t12, r20, r21, r22))
+            xz = fused(g, L[p, 0, 2] + L[p, 2, 0], dot(t00, t01, t02, r20, r21, r22))
+            xy = fused(g, L[p, 0, 1] + L[p, 1, 0], dot(t00, t01, t02, r10, r11, r12))
             stress[p, 0], stress[p, 1], stress[p, 2] = xx, yy, zz
             stress[p, 3], stress[p, 4], stress[p, 5] = yz, xz, xy
-            shear_stress[p] = math.sqrt(0.5 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy)
+            shear_stress[p] = math.sqrt(fused(0.5, dot(xx, yy, zz, xx, yy, zz), dot(yz, xz, xy, yz, xz, xy)))
 
 
 @kernel()

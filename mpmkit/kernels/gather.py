@@ -12,15 +12,27 @@ from numba import prange
 
 from .compile import CHUNK, chunk_count, inline, kernel
 from .scatter import NODE, centroid
-from .vectors import lane, load, plus, scale, zero
+from .vectors import (
+    lane,
+    load,
+    load_first,
+    load_twice,
+    picker,
+    plus,
+    plus_product,
+    scale,
+    spread,
+    store,
+    zero,
+)
 
 LEAST_MOMENT = 0.125
 """Least second moment of the weights of cpGIMP with two particles an axis, in cells²."""
 
 
 @inline()
-def _inverse_moment(weight, p, axis, support, mean):
-    """1 / Σ N (x_node - x̄)² along an axis, in 1/cells².
+def _inverse_moment(weight, p, axis, support, mean, cell_size):
+    """Δx / Σ N (x_node - x̄)² along an axis, in 1/m.
 
     The moment, which nearly vanishes where a small box is at a node, counts as ``LEAST_MOMENT`` at the least:
     a particle that barely reaches beyond one node knows no slope, and would be stiffer than sound with one.
@@ -28,11 +40,23 @@ def _inverse_moment(weight, p, axis, support, mean):
     moment = 0.0
     for a in range(support):
         moment += weight[p, axis, a] * (a - mean) ** 2
-    return 1.0 / max(moment, LEAST_MOMENT)
+    return 1.0 / (max(moment, LEAST_MOMENT) * cell_size)
+
+
+# The pickers name lanes of two vectors: 0 to 7 of the first, 8 to 15 of the second. Lanes 0 to 3 of a sum of
+# slopes are with the lever, lanes 4 to 7 with the gradient; each has mass and velocity.
+_SLOPE = picker(0, 0, 0, 0, 8, 8, 8, 8)
+_TWICE = picker(0, 1, 2, 3, 0, 1, 2, 3)
+_LEVERS_OF_TWO, _AND_THE_THIRD = picker(1, 9, 0, 2, 10, 0, 3, 11), picker(0, 1, 9, 3, 4, 10, 6, 7)
+_GRADIENTS_OF_TWO, _AND_THE_OTHER = picker(5, 13, 0, 6, 14, 0, 7, 15), picker(0, 1, 13, 3, 4, 14, 6, 7)
+"""A tensor row by row, but for its last entry, from sums along axes 0 and 1, and what axis 2 adds to it."""
+_CHANGE_2D, _CHANGE_3D = picker(0, 3, 4, 0, 0, 0, 0, 0), picker(0, 4, 5, 6, 0, 0, 0, 0)
+"""Changes of velocity, where the velocities are."""
+_FROM_1 = picker(8, 0, 1, 2, 3, 4, 5, 6)
 
 
 @cache
-def gather(dim: int, support: int):
+def gather(dim: int, support: int, affine: bool = True):
     """The kernel that takes velocities and their slopes to the particles.
 
     ``gather(nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L,
@@ -42,14 +66,34 @@ def gather(dim: int, support: int):
     - if ``strain``: L_ij = Σ v_i ∂N/∂x_j, L_θθ = Σ v_r N/r where ``hoop`` has columns, and rate = tr L;
     - if ``has_affine``: C = Σ N v (x_node - x̄)ᵀ D⁻¹, with the diagonal D = Σ N (x_node - x̄)².
 
+    With N the weights and, for axis d, the slope K_d = (lever (x_node - x̄)_d N_d, gradient ∂N_d/∂x_d), all
+    of them come from the record of a node, (m, v, Δv), and twice its first half, (m, v, m, v):
+
+        v = Σ N0 N1 N2 (m, v, Δv),   s_0 = Σ K0 N1 N2 (m, v, m, v),   s_1 = Σ N0 K1 N2 (…),   s_2 = …
+
     In an axisymmetric scene the radius moves as r ← r (1 + dt D_θθ): the radially weighted average of
     v_r belongs to the centroid of the particle's ring, not to its middle, and near the axis the two differ;
     the hoop rate is exact for the middle, and the axis can never be crossed.
+
+    Args:
+        dim, support: axes, and nodes along each that a shape function touches.
+        affine: whether ``has_affine`` is ever asked for; without, the lanes of the levers stay empty.
     """
-    return _gather_2d(support) if dim == 2 else _gather_3d(support)
+    return _gather_2d(support, affine) if dim == 2 else _gather_3d(support, affine)
 
 
-def _gather_2d(support):
+def _slope_for(affine):
+    @inline()
+    def slope(weight, gradient, p, axis, a, mean):
+        lever = (a - mean) * weight[p, axis, a] if affine else 0.0
+        return _SLOPE(spread(lever), spread(gradient[p, axis, a]))
+
+    return slope
+
+
+def _gather_2d(support, affine):
+    slope, keeps_affine = _slope_for(affine), affine
+
     @kernel()
     def gather_2d(
         nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L, rate,
@@ -60,49 +104,44 @@ def _gather_2d(support):
         for chunk in prange(chunk_count(n)):
             for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
                 first = (base[p, 0] - lower[0]) * strides[0] + (base[p, 1] - lower[1])
-                v = x = y = ax = ay = h = zero()
+                m0, m1 = centroid(weight, p, 0, support), centroid(weight, p, 1, support)
+                v = x = y = h = zero()
                 for a in range(support):
-                    w0 = weight[p, 0, a]
                     row = (first + a * strides[0]) * NODE
-                    rv = ry = ray = zero()
+                    rv = ry = zero()
                     for b in range(support):
-                        w1 = weight[p, 1, b]
-                        node = load(nodes, row + b * NODE)
-                        rv = plus(rv, w1, node)
-                        ry = plus(ry, gradient[p, 1, b], node)
-                        if has_affine:
-                            ray = plus(ray, b * w1, node)
-                    v = plus(v, w0, rv)
-                    x = plus(x, gradient[p, 0, a], rv)
-                    y = plus(y, w0, ry)
+                        rv = plus(rv, weight[p, 1, b], load(nodes, row + b * NODE))
+                        ry = plus_product(
+                            ry, slope(weight, gradient, p, 1, b, m1), load_twice(nodes, row + b * NODE)
+                        )
+                    v = plus(v, weight[p, 0, a], rv)
+                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), _TWICE(rv, rv))
+                    y = plus(y, weight[p, 0, a], ry)
                     if radial:
                         h = plus(h, hoop[p, a], rv)
-                    if has_affine:
-                        ax = plus(ax, a * w0, rv)
-                        ay = plus(ay, w0, ray)
                 if strain:
-                    L[p, 0, 0], L[p, 0, 1] = lane(x, 1), lane(y, 1)
-                    L[p, 1, 0], L[p, 1, 1] = lane(x, 2), lane(y, 2)
+                    L[p, 0, 0], L[p, 0, 1] = lane(x, 5), lane(y, 5)
+                    L[p, 1, 0], L[p, 1, 1] = lane(x, 6), lane(y, 6)
                     L[p, 2, 2] = lane(h, 1)
-                    rate[p] = lane(x, 1) + lane(y, 2) + lane(h, 1)
-                if has_affine:
-                    m0, m1 = centroid(weight, p, 0, support), centroid(weight, p, 1, support)
-                    d0 = _inverse_moment(weight, p, 0, support, m0) / cell_size
-                    d1 = _inverse_moment(weight, p, 1, support, m1) / cell_size
-                    ax, ay = scale(d0, plus(ax, -m0, v)), scale(d1, plus(ay, -m1, v))
+                    rate[p] = lane(x, 5) + lane(y, 6) + lane(h, 1)
+                if keeps_affine and has_affine:
+                    ax = scale(_inverse_moment(weight, p, 0, support, m0, cell_size), x)
+                    ay = scale(_inverse_moment(weight, p, 1, support, m1, cell_size), y)
                     affine[p, 0, 0], affine[p, 0, 1] = lane(ax, 1), lane(ay, 1)
                     affine[p, 1, 0], affine[p, 1, 1] = lane(ax, 2), lane(ay, 2)
                 if move:
-                    v0, v1 = lane(v, 1), lane(v, 2)
-                    position[p, 0] += dt * (position[p, 0] * lane(h, 1) if radial else v0)
-                    position[p, 1] += dt * v1
-                    velocity[p, 0] = flip * (velocity[p, 0] + lane(v, 3)) + (1 - flip) * v0
-                    velocity[p, 1] = flip * (velocity[p, 1] + lane(v, 4)) + (1 - flip) * v1
+                    position[p, 0] += dt * (position[p, 0] * lane(h, 1) if radial else lane(v, 1))
+                    position[p, 1] += dt * lane(v, 2)
+                    old = _FROM_1(load_first(velocity, 2 * p, 2), v)
+                    new = plus(scale(1 - flip, v), flip, plus(old, 1.0, _CHANGE_2D(v, v)))
+                    velocity[p, 0], velocity[p, 1] = lane(new, 1), lane(new, 2)
 
     return gather_2d
 
 
-def _gather_3d(support):
+def _gather_3d(support, affine):
+    slope, keeps_affine = _slope_for(affine), affine
+
     @kernel()
     def gather_3d(
         nodes, strides, lower, base, weight, gradient, hoop, cell_size, dt, flip, position, velocity, L, rate,
@@ -116,58 +155,43 @@ def _gather_3d(support):
                     + (base[p, 1] - lower[1]) * strides[1]
                     + (base[p, 2] - lower[2])
                 )
-                v = x = y = z = ax = ay = az = zero()
+                m0, m1 = centroid(weight, p, 0, support), centroid(weight, p, 1, support)
+                m2 = centroid(weight, p, 2, support)
+                v = x = y = z = zero()
                 for a in range(support):
-                    w0 = weight[p, 0, a]
-                    pv = py = pz = pay = paz = zero()
+                    pv = py = pz = zero()
                     for b in range(support):
-                        w1 = weight[p, 1, b]
                         row = (first + a * strides[0] + b * strides[1]) * NODE
-                        rv = rz = raz = zero()
+                        rv = rz = zero()
                         for c in range(support):
-                            w2 = weight[p, 2, c]
-                            node = load(nodes, row + c * NODE)
-                            rv = plus(rv, w2, node)
-                            rz = plus(rz, gradient[p, 2, c], node)
-                            if has_affine:
-                                raz = plus(raz, c * w2, node)
-                        pv = plus(pv, w1, rv)
-                        py = plus(py, gradient[p, 1, b], rv)
-                        pz = plus(pz, w1, rz)
-                        if has_affine:
-                            pay = plus(pay, b * w1, rv)
-                            paz = plus(paz, w1, raz)
-                    v = plus(v, w0, pv)
-                    x = plus(x, gradient[p, 0, a], pv)
-                    y = plus(y, w0, py)
-                    z = plus(z, w0, pz)
-                    if has_affine:
-                        ax = plus(ax, a * w0, pv)
-                        ay = plus(ay, w0, pay)
-                        az = plus(az, w0, paz)
+                            rv = plus(rv, weight[p, 2, c], load(nodes, row + c * NODE))
+                            rz = plus_product(
+                                rz, slope(weight, gradient, p, 2, c, m2), load_twice(nodes, row + c * NODE)
+                            )
+                        pv = plus(pv, weight[p, 1, b], rv)
+                        py = plus_product(py, slope(weight, gradient, p, 1, b, m1), _TWICE(rv, rv))
+                        pz = plus(pz, weight[p, 1, b], rz)
+                    v = plus(v, weight[p, 0, a], pv)
+                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), _TWICE(pv, pv))
+                    y = plus(y, weight[p, 0, a], py)
+                    z = plus(z, weight[p, 0, a], pz)
                 if strain:
-                    L[p, 0, 0], L[p, 0, 1], L[p, 0, 2] = lane(x, 1), lane(y, 1), lane(z, 1)
-                    L[p, 1, 0], L[p, 1, 1], L[p, 1, 2] = lane(x, 2), lane(y, 2), lane(z, 2)
-                    L[p, 2, 0], L[p, 2, 1], L[p, 2, 2] = lane(x, 3), lane(y, 3), lane(z, 3)
-                    rate[p] = lane(x, 1) + lane(y, 2) + lane(z, 3)
-                if has_affine:
-                    m0 = centroid(weight, p, 0, support)
-                    m1 = centroid(weight, p, 1, support)
-                    m2 = centroid(weight, p, 2, support)
-                    ax = scale(_inverse_moment(weight, p, 0, support, m0) / cell_size, plus(ax, -m0, v))
-                    ay = scale(_inverse_moment(weight, p, 1, support, m1) / cell_size, plus(ay, -m1, v))
-                    az = scale(_inverse_moment(weight, p, 2, support, m2) / cell_size, plus(az, -m2, v))
-                    affine[p, 0, 0], affine[p, 0, 1], affine[p, 0, 2] = lane(ax, 1), lane(ay, 1), lane(az, 1)
-                    affine[p, 1, 0], affine[p, 1, 1], affine[p, 1, 2] = lane(ax, 2), lane(ay, 2), lane(az, 2)
-                    affine[p, 2, 0], affine[p, 2, 1], affine[p, 2, 2] = lane(ax, 3), lane(ay, 3), lane(az, 3)
+                    store(L, 9 * p, _AND_THE_OTHER(_GRADIENTS_OF_TWO(x, y), z))
+                    L[p, 2, 2] = lane(z, 7)
+                    rate[p] = lane(x, 5) + lane(y, 6) + lane(z, 7)
+                if keeps_affine and has_affine:
+                    ax = scale(_inverse_moment(weight, p, 0, support, m0, cell_size), x)
+                    ay = scale(_inverse_moment(weight, p, 1, support, m1, cell_size), y)
+                    az = scale(_inverse_moment(weight, p, 2, support, m2, cell_size), z)
+                    store(affine, 9 * p, _AND_THE_THIRD(_LEVERS_OF_TWO(ax, ay), az))
+                    affine[p, 2, 2] = lane(az, 3)
                 if move:
-                    v0, v1, v2 = lane(v, 1), lane(v, 2), lane(v, 3)
-                    position[p, 0] += dt * v0
-                    position[p, 1] += dt * v1
-                    position[p, 2] += dt * v2
-                    velocity[p, 0] = flip * (velocity[p, 0] + lane(v, 4)) + (1 - flip) * v0
-                    velocity[p, 1] = flip * (velocity[p, 1] + lane(v, 5)) + (1 - flip) * v1
-                    velocity[p, 2] = flip * (velocity[p, 2] + lane(v, 6)) + (1 - flip) * v2
+                    position[p, 0] += dt * lane(v, 1)
+                    position[p, 1] += dt * lane(v, 2)
+                    position[p, 2] += dt * lane(v, 3)
+                    old = _FROM_1(load_first(velocity, 3 * p, 3), v)
+                    new = plus(scale(1 - flip, v), flip, plus(old, 1.0, _CHANGE_3D(v, v)))
+                    velocity[p, 0], velocity[p, 1], velocity[p, 2] = lane(new, 1), lane(new, 2), lane(new, 3)
 
     return gather_3d
 
@@ -176,23 +200,28 @@ def _gather_3d(support):
 def gather_scalar(dim: int, support: int):
     """The kernel that takes Σ N value of a nodal field to the particles, into ``out (n,)``.
 
-    Rows are read as whole vectors, so that ``field`` must have ``LANES`` more doubles behind it than nodes.
+    Rows are read as four doubles, so that ``field`` must have three more of them behind it than nodes.
     """
 
     @kernel()
     def gather_scalar(field, strides, lower, base, weight, out):
         n, last = len(base), dim - 1
-        planes = support if dim == 3 else 1
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
         for chunk in prange(chunk_count(n)):
             for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-                first = 0
-                for d in range(dim):
-                    first += (base[p, d] - lower[d]) * strides[d]
+                first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
                 total = zero()
-                for a in range(support):
-                    for b in range(planes):
-                        w = weight[p, 0, a] * (weight[p, 1, b] if dim == 3 else 1.0)
-                        total = plus(total, w, load(field, first + a * strides[0] + b * strides[1]))
+                if dim == 2:
+                    for a in range(support):
+                        total = plus(total, weight[p, 0, a], load_twice(field, first + a * plane))
+                else:
+                    first += (base[p, 1] - low1) * line
+                    for a in range(support):
+                        of_plane = zero()
+                        for b in range(support):
+                            row = load_twice(field, first + a * plane + b * line)
+                            of_plane = plus(of_plane, weight[p, 1, b], row)
+                        total = plus(total, weight[p, 0, a], of_plane)
                 value = weight[p, last, 0] * lane(total, 0) + weight[p, last, 1] * lane(total, 1)
                 if support > 2:
                     value += weight[p, last, 2] * lane(total, 2)

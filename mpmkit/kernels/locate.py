@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
+from .compile import CHUNK, chunk_count, inline, kernel
 from .sort import BLOCK_WIDTH
 
 HERE, STRAYED, LOST = range(3)
@@ -29,15 +29,41 @@ def locate(dim: int):
     ``block_cell`` its lowest cell; ``verdicts`` is scratch, two integers a block.
     """
 
+    @inline()
+    def all_here(position, half_size, begin, end, extent, inverse_cell, block_cell, window_low, window_high):
+        """Whether all particles of a block are in place, as they nearly always are.
+
+        The arrays are flat, so that the compiler takes several particles at once.
+        """
+        good = True
+        for d in range(dim):
+            least = float(max(window_low[d], block_cell[d] - 1))
+            most = float(min(window_high[d], block_cell[d] + BLOCK_WIDTH) + 1)
+            x, half, longest = (
+                position[dim * begin : dim * end],
+                half_size[dim * begin : dim * end],
+                extent[d],
+            )
+            for k in range(end - begin):
+                good &= (x[dim * k + d] >= 0.0) & (x[dim * k + d] <= longest)
+                good &= (half[dim * k + d] > 0.0) & (half[dim * k + d] < np.inf)
+                good &= (x[dim * k + d] * inverse_cell >= least) & (x[dim * k + d] * inverse_cell < most)
+        return good
+
     @kernel()
     def locate(
         position, half_size, extent, inverse_cell, block_first, block_cell, window_low, window_high, verdicts
     ):
-        blocks = len(block_cell)
+        blocks, positions, half_sizes = len(block_cell), position.reshape(-1), half_size.reshape(-1)
         for share in prange(SHARES):  # of every colour some blocks: neighbours differ in load
             for b in range(share, blocks, SHARES):
                 worst, who = HERE, -1
                 for g in range(block_first.shape[0]):
+                    if all_here(
+                        positions, half_sizes, block_first[g, b], block_first[g, b + 1], extent, inverse_cell,
+                        block_cell[b], window_low, window_high,
+                    ):  # fmt: skip
+                        continue
                     for p in range(block_first[g, b], block_first[g, b + 1]):
                         here = there = True
                         for d in range(dim):

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
+from .compile import CHUNK, chunk_count, inline, kernel
 
 
 def shear_rate(velocity_gradient: np.ndarray, floor: float = 0.0) -> np.ndarray:
@@ -20,16 +20,21 @@ def shear_rate(velocity_gradient: np.ndarray, floor: float = 0.0) -> np.ndarray:
     return rate
 
 
+@inline()
+def shear_squared(L, p):
+    """2 D':D' of one particle, 1/s²."""
+    mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
+    xx, yy, zz = L[p, 0, 0] - mean, L[p, 1, 1] - mean, L[p, 2, 2] - mean
+    yz, xz, xy = L[p, 1, 2] + L[p, 2, 1], L[p, 0, 2] + L[p, 2, 0], L[p, 0, 1] + L[p, 1, 0]
+    return 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy
+
+
 @kernel()
 def _shear_rate(L, floor, rate):
     n = len(L)
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
-            xx, yy, zz = L[p, 0, 0] - mean, L[p, 1, 1] - mean, L[p, 2, 2] - mean
-            yz, xz, xy = L[p, 1, 2] + L[p, 2, 1], L[p, 0, 2] + L[p, 2, 0], L[p, 0, 1] + L[p, 1, 0]
-            squared = 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy
-            rate[p] = max(math.sqrt(squared), floor)
+            rate[p] = max(math.sqrt(shear_squared(L, p)), floor)
 
 
 @kernel()

@@ -17,6 +17,7 @@ from numba.extending import intrinsic, models, register_model
 LANES = 8
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_HALF = ir.VectorType(ir.DoubleType(), LANES // 2)
 _INT = ir.IntType(32)
 
 
@@ -36,18 +37,23 @@ class _VectorModel(models.PrimitiveModel):
 _vector = Vector()
 
 
-def _pointer(context, builder, signature, arguments):
+def _pointer(context, builder, signature, arguments, kind=_VECTOR):
     """Address of ``array.flat[i]`` of a contiguous array, as that of a vector."""
     array, i = signature.args[:2]
     data = context.make_array(array)(context, builder, arguments[0]).data
     index = context.cast(builder, arguments[1], i, types.intp)
-    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), kind.as_pointer())
+
+
+def _mask(lanes):
+    """Constant of the lanes of a shuffle."""
+    return ir.Constant(ir.VectorType(_INT, len(lanes)), list(lanes))
 
 
 def _spread(builder, scalar):
     nothing = ir.Constant(_VECTOR, ir.Undefined)
     first = builder.insert_element(nothing, scalar, ir.Constant(_INT, 0))
-    return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
+    return builder.shuffle_vector(first, nothing, _mask([0] * LANES))
 
 
 def multiply_add(builder, a, b, c):
@@ -67,6 +73,34 @@ def load(typing, array, i):
 
     def generate(context, builder, signature, arguments):
         return builder.load(_pointer(context, builder, signature, arguments), align=8)
+
+    return _vector(array, i), generate
+
+
+@intrinsic(prefer_literal=True)
+def load_first(typing, array, i, count):
+    """The first ``count`` doubles of a vector, and zeros; no more than these are read. ``count`` must be
+    written as a number.
+    """
+    number = count.literal_value
+
+    def generate(context, builder, signature, arguments):
+        pointer = _pointer(context, builder, signature, arguments)
+        read = ir.Constant(ir.VectorType(ir.IntType(1), LANES), [k < number for k in range(LANES)])
+        kind = ir.FunctionType(_VECTOR, [pointer.type, _INT, read.type, _VECTOR])
+        masked = cgutils.get_or_insert_function(builder.module, kind, "llvm.masked.load.v8f64.p0")
+        return builder.call(masked, [pointer, _INT(8), read, ir.Constant(_VECTOR, [0.0] * LANES)])
+
+    return _vector(array, i, count), generate
+
+
+@intrinsic
+def load_twice(typing, array, i):
+    """Four doubles of a contiguous array from its flat index i on, in both halves of a vector."""
+
+    def generate(context, builder, signature, arguments):
+        half = builder.load(_pointer(context, builder, signature, arguments, _HALF), align=8)
+        return builder.shuffle_vector(half, half, _mask([0, 1, 2, 3] * 2))
 
     return _vector(array, i), generate
 
@@ -113,6 +147,49 @@ def plus(typing, total, factor, vector):
 
 
 @intrinsic
+def multiply(typing, a, b):
+    """a b, lane by lane."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.fmul(*arguments)
+
+    return _vector(a, b), generate
+
+
+@intrinsic
+def plus_product(typing, total, a, b):
+    """total + a b, lane by lane, rounded once where the machine can."""
+
+    def generate(context, builder, signature, arguments):
+        return multiply_add(builder, arguments[1], arguments[2], arguments[0])
+
+    return _vector(total, a, b), generate
+
+
+@intrinsic
+def spread(typing, factor):
+    """A vector of eight times the same scalar."""
+
+    def generate(context, builder, signature, arguments):
+        return _spread(builder, arguments[0])
+
+    return _vector(types.float64), generate
+
+
+def picker(*lanes):
+    """A function (a, b) → vector for kernels, whose lane k is lane ``lanes[k]`` of the sixteen of a and b."""
+
+    def pick(typing, a, b):
+        def generate(context, builder, signature, arguments):
+            return builder.shuffle_vector(*arguments, _mask(lanes))
+
+        return _vector(a, b), generate
+
+    pick.__qualname__ = f"picker{lanes}"  # two of them are not the same code
+    return intrinsic(pick)
+
+
+@intrinsic
 def pack(typing, a, b, c, d, e, f, g, h):
     """A vector of eight scalars."""
 
@@ -142,6 +219,12 @@ if numba.config.DISABLE_JIT:
         found = array.reshape(-1)[i : i + LANES]
         return np.concatenate([found, np.zeros(LANES - len(found))])
 
+    def load_first(array, i, count):
+        return np.concatenate([array.reshape(-1)[i : i + count], np.zeros(LANES - count)])
+
+    def load_twice(array, i):
+        return np.tile(array.reshape(-1)[i : i + LANES // 2], 2)
+
     def store(array, i, vector):
         there = array.reshape(-1)[i : i + LANES]
         there[:] = vector[: len(there)]
@@ -154,6 +237,18 @@ if numba.config.DISABLE_JIT:
 
     def plus(total, factor, vector):
         return total + factor * vector
+
+    def multiply(a, b):
+        return a * b
+
+    def plus_product(total, a, b):
+        return total + a * b
+
+    def spread(factor):
+        return np.full(LANES, factor)
+
+    def picker(*lanes):
+        return lambda a, b: np.concatenate([a, b])[list(lanes)]
 
     def pack(a, b, c, d, e, f, g, h):
         return np.array([a, b, c, d, e, f, g, h])

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 T500_DIAMETER = 0.5
 """Spread diameter, m, at which T500 is taken."""
+PASSED = ("mass_in", "mass_out")
+"""Variables of a history with sources or sinks whose last values are in the summary."""
 LEAST_RATE = 1e-5
 """m/s; slower growth does not count as spreading, even if the material moves."""
 UNITS = {
@@ -100,9 +102,21 @@ def summarise(
         "stopped_because": stopped_because,
         "ended_by": ended_by,
         "plugins": plugins,
+        **_passed(history),
         **{name: _last(history, name) if arrived else None for name in measured},
-        "units": {**UNITS, **measured},
+        "units": {**UNITS, **{name: "kg" for name in PASSED if name in history.variables}, **measured},
     }
+
+
+def _passed(history: xarray.Dataset) -> dict[str, Any]:
+    """Mass that has come in and gone out, kg, in all and by the names of sources and sinks."""
+    found: dict[str, Any] = {name: _last(history, name) for name in PASSED if name in history.variables}
+    for kind in ("source", "sink"):
+        name = f"{kind}_mass"
+        if name in history.variables and history.sizes["time"]:
+            last = history[name].values[-1]
+            found[name] = dict(zip(map(str, history[kind].values), map(float, last), strict=True))
+    return found
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:

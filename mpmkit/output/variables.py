@@ -44,6 +44,7 @@ PARTICLE_VARIABLES: dict[str, ParticleVariable] = {
     "shear_rate": ParticleVariable("1/s", "shear rate √(2 D':D')"),
     "shear_stress": ParticleVariable("Pa", "shear stress √(s:s/2) of the stress deviator"),
     "yielded": ParticleVariable("1", "1 where the material has yielded, 0 where it has not"),
+    "age": ParticleVariable("s", "time since the particle came in, or since the start"),
 }
 """Fields for ``output.particle_history``, in addition to the state variables of the laws of the case."""
 

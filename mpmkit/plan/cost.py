@@ -101,7 +101,7 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "time_step": step,
         "limits": {name: limit if math.isfinite(limit) else None for name, limit in limits.as_dict().items()},
         "limited_by": limited_by,
-        "sound_speed": [case.sound_speed(body.material) for body in case.bodies],
+        "sound_speed": [case.sound_speed(material) for material in case.materials.values()],
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
         "expected_seconds": steps * _mean_seconds(start, particles, growth, case.end / steps),

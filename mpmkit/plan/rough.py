@@ -21,9 +21,12 @@ def rough_seconds(case: Case, threads: int = 1) -> float:
     The estimate uses the step and the particles at the start. It neglects sound speeds that follow the flow,
     and splitting of particles.
     """
-    groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
+    groups = [material_group(case, material, slice(0, 0)) for material in case.materials.values()]
     materials = [(group, group.wave_speed) for group in groups]
-    fastest = max(body.largest_speed for body in case.bodies)
+    fastest = max(
+        [0.0, *map(case.speed_at_start, case.bodies)]
+        + [case.source_speed(name, 0.0, case.end) for name in case.sources]
+    )
     step, _ = choose_step(case.scheme, limits(materials, case.grid.cell_size, fastest, case.scale.rate))
     particles = expected_particles(case)
     if not step > 0:

@@ -41,7 +41,8 @@ def planes_of_symmetry(case: Case) -> tuple[float, float] | None:
 
 def _common_middle(case: Case) -> tuple[float, float] | None:
     """Where the vertical planes of symmetry of all bodies and of their motion meet."""
-    if case.space != "3d" or any(case.gravity_vector[:2]) or case.varying_forces or case.sinks:
+    pulled = any(case.gravity_vector[:2]) or case.varying_forces
+    if case.space != "3d" or pulled or case.sinks or case.sources:
         return None
     middles = {
         body.shape.middle(case.space_) if _falls(body.velocity) and not body.initial else None

@@ -31,6 +31,7 @@ KINDS = {
     "body_force": "body force",
     "initial_field": "initial field",
     "sink": "sink",
+    "source": "source",
     "diagnostic": "diagnostic",
     "particle_field": "particle field",
 }

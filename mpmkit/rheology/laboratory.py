@@ -6,8 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from .deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
-from .rotation import cylinder_torque
+from .funnels import Sections, flow_time, rectangles
+from .rotation import coaxial_torque, cylinder_torque
 
 G = 9.81
 SQRT3 = math.sqrt(3)
@@ -102,6 +105,27 @@ def _squeeze(p: Given) -> float:
     return friction + math.sqrt(3) * math.pi * p["yield_stress"] * radius**2
 
 
+def _v_funnel(p: Given) -> float:
+    outlet, top, depth = p["outlet_width"], p["top_width"], p["depth"]
+    slanted, straight = p["funnel_height"], p["outlet_height"]
+
+    def sections(z: np.ndarray) -> Sections:
+        return rectangles(np.interp(z, [straight, straight + slanted], [outlet, top]), depth)
+
+    volume = p["emptied_part"] * depth * (outlet * straight + (outlet + top) / 2 * slanted)
+    return flow_time(straight + slanted, volume, sections, *_fluid(p))
+
+
+def _fluid(p: Given) -> tuple[float, float, float]:
+    return p["density"], p["yield_stress"], p["plastic_viscosity"]
+
+
+def _coaxial(p: Given) -> float:
+    _, *fluid = _fluid(p)
+    radii = p["inner_radius"], p["outer_radius"], p["cylinder_height"]
+    return coaxial_torque(*radii, 2 * math.pi * p["turns_per_second"], *fluid)
+
+
 def _vane(p: Given, turns: float) -> float:
     return cylinder_torque(
         p["vane_radius"], p["vane_height"], 2 * math.pi * turns, p["yield_stress"], p["plastic_viscosity"]
@@ -148,6 +172,11 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("plate_force", "friction and stretching, 2π τ0 R³/(3h) + √3 π τ0 R²", _squeeze, 0.1),
         Formula("plate_force", "friction on the plates, 2π τ0 R³/(3h)", lambda p: _friction(p)[0], None),
     ],
+    "v_funnel": [
+        Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",
+                _v_funnel, None)
+    ],
+    "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],
     "vane": [
         Formula("torque_of_vane", "a cylinder that turns, Reiner & Riwlin", _turning_vane, 0.05),
         Formula("torque_of_vane", "start of flow, 2π R² h τ0", lambda p: _vane(p, 1e-12), None),

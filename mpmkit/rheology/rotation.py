@@ -1,4 +1,4 @@
-"""Torque of a cylinder that turns in a wide cup of Bingham fluid."""
+"""Torque of a cylinder that turns in a cup of Bingham fluid."""
 
 from __future__ import annotations
 
@@ -29,3 +29,26 @@ def cylinder_torque(
         beyond = beta**2 - 1 - 2 * math.log(beta) > 2 * viscosity * rate / yield_stress
         low, high = (low, beta) if beyond else (beta, high)
     return 2 * math.pi * (low * radius) ** 2 * height * yield_stress
+
+
+def coaxial_torque(
+    inner: float, outer: float, height: float, rate: float, yield_stress: float, viscosity: float
+) -> float:
+    """M, N m, on the side of a cylinder that turns in a coaxial cup; exact (Reiner & Riwlin).
+
+        M = 4π h [μ Ω + τ0 ln(R_s/R_i)]/(R_i⁻² - R_s⁻²)
+
+    where R_s = R_o if the fluid is sheared up to the cup, M/(2π R_o² h) ≥ τ0; else R_s is the radius at which
+    the shear stress has fallen to τ0, and the torque is that in a wide cup.
+
+    Args:
+        inner, outer: R_i and R_o, m.
+        height: h, m.
+        rate: Ω, rad/s.
+        yield_stress, viscosity: τ0, Pa, and μ, Pa s.
+    """
+    wide = cylinder_torque(inner, height, rate, yield_stress, viscosity)
+    if wide < 2 * math.pi * outer**2 * height * yield_stress:
+        return wide
+    drive = viscosity * rate + yield_stress * math.log(outer / inner)
+    return 4 * math.pi * height * drive / (inner**-2 - outer**-2)

@@ -8,7 +8,7 @@ from ..case.ending import Until
 from ..output.summary import AT_REST, CONDITION
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, plain_state, restore_plain
-from .milestones import LOOKS, Milestones
+from .milestones import LOOKS, Milestones, centre_of_mass
 
 KEPT = 2e-4
 """Change of a length at rest, as a part of the height of the bodies at the start: 0.06 mm of 300 mm."""
@@ -23,10 +23,9 @@ class Ending:
     quarter of the run so far, the spread diameter, the height and the centre of mass have each stayed
     within a band of ``KEPT`` h, with h the height of the bodies at the start. The band separates creep from
     rest: material that creeps at a constant rate leaves it, unless it needs four times the run so far to
-        creep by
-    4 ``KEPT`` h. Small elastic oscillations stay in it, although their speed is not zero. The run does not
-    end while a wall at rest will still move, a wall that holds the material will still vanish, or a force
-    still changes.
+    creep by 4 ``KEPT`` h. Small elastic oscillations stay in it, although their speed is not zero. The run
+    does not end while a wall at rest will still move, a wall that holds the material will still vanish, or a
+    force still changes.
 
     Attributes:
         ended: ``at-rest``, ``condition``, or an empty text as long as the run continues.
@@ -72,20 +71,22 @@ class Ending:
             self._low = self._high = lengths
         self._low, self._high = np.minimum(self._low, lengths), np.maximum(self._high, lengths)
         moved = not (self._high - self._low <= KEPT * simulation.case.height).all()
-        if moved or self._a_wall_has_yet_to_move() or not simulation.settled:
+        waits = self._a_wall_has_yet_to_move() or self._more_comes_in()
+        if moved or waits or not simulation.settled:
             self._since, self._low, self._high = simulation.time, lengths, lengths
         kept = simulation.time - self._since >= PART * simulation.time
         return kept and self._milestones.at_rest_since is not None
 
     def _lengths(self) -> np.ndarray:
-        """Spread diameter, height, and the centre of mass along the axes that are not periodic, m."""
-        simulation = self._simulation
-        p, measures, grid = simulation.particles, simulation.measures, simulation.grid
-        centre = (p.mass[:, None] * p.position).sum(axis=0) / p.mass.sum()
-        along = grid.periodic.copy()
-        along[0] |= simulation.case.space_.radial  # the centre is on the axis
-        lengths = np.array([measures.spread(p), measures.height(p), *centre[~along]])
+        """Spread diameter, height, and the centre of mass, m."""
+        p, measures = self._simulation.particles, self._simulation.measures
+        if not len(p):
+            return np.zeros(0)
+        lengths = [measures.spread(p), measures.height(p), *centre_of_mass(self._simulation)]
         return np.nan_to_num(lengths)  # no spread along a periodic axis
+
+    def _more_comes_in(self) -> bool:
+        return self._simulation.operations.sources.goes_on(self._simulation.time)
 
     def _a_wall_has_yet_to_move(self) -> bool:
         time, end = self._simulation.time, self._simulation.case.end

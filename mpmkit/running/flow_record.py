@@ -66,6 +66,8 @@ class FlowRecord:
 
     def look(self, simulation: Simulation) -> None:
         """Add the present step if enough may have changed since the last moment."""
+        if not len(simulation.particles):
+            return
         mass, doubled, _ = kinetics(simulation.particles.mass, simulation.particles.velocity)
         before, self._speed = self._speed, math.sqrt(doubled / mass)
         if self.moments:
@@ -77,7 +79,7 @@ class FlowRecord:
 
     def add(self, simulation: Simulation) -> None:
         """Add the present step if it is new; another moment may be removed for it."""
-        if self._last == simulation.steps:
+        if self._last == simulation.steps or not len(simulation.particles):
             return
         self._last = simulation.steps
         self.moments.append(self._moment(simulation))

@@ -7,7 +7,8 @@ finds the same numbers.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -23,8 +24,8 @@ AHEAD = 4.0
 SLOW = 1e-2
 """RMS speed at rest, as a part of the largest RMS speed so far: a 10,000th of the kinetic energy."""
 STILL = 2e-3
-"""Change of the spread diameter at rest, within h / (largest RMS speed), as a part of h: a 1000th for each of
-its two edges."""
+"""Change of a length at rest, within h / (largest RMS speed): of the spread diameter as a part of h, a 1000th
+for each of its two edges; of the centre of mass as a part of the present height."""
 SMOOTHING = 0.02
 """Time over which the rate of the spread is averaged, in units of h / (largest RMS speed)."""
 
@@ -51,9 +52,9 @@ class _Seen:
     quiet_since: float = math.nan
     """time since which the material has been slow and kept its spread, s"""
     band_since: float = math.nan
-    """time since which the spread has been between the next two values, s"""
-    band_low: float = math.inf
-    band_high: float = -math.inf
+    """time since which the lengths have been between the next two values, s"""
+    band_low: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    band_high: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 class Milestones:
@@ -63,11 +64,15 @@ class Milestones:
     that is so wide at the start has none.
 
     **At rest** means that the material does not move or spread any more. U is the largest RMS speed of the
-    particles so far, and h the height of the bodies at the start. The RMS speed must be at most ``SLOW`` U,
-    the spread diameter must change by at most ``STILL`` h in a time of h / U, and both for at least h / U.
-    Material is not at rest as long as a force changes. These scales come from the run itself, so that water
-    and a stiff paste are judged in the same way. Small elastic oscillations of material at rest do not count
-    as motion.
+    particles so far, h the height of the bodies at the start, and d the height of the material now. The RMS
+    speed must be at most ``SLOW`` U; in a time of h / U the spread diameter must change by at most ``STILL``
+    h and the centre of mass by at most ``STILL`` d; and all this for at least h / U. Material is not at rest
+    as long as a force changes. These scales come from the run itself, so that water and a stiff paste are
+    judged in the same way. Small elastic oscillations of material at rest do not count as motion.
+
+    The centre of mass tells what a spread cannot: material that fills a channel from end to end, and still
+    levels. If its depths at the ends change by ∓a, linear in between, a layer of depth d and length L has its
+    centre moved by a L/(6 d). So wherever L > 6 d, no depth changes by more than ``STILL`` d.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -117,7 +122,8 @@ class Milestones:
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore the results so far."""
-        self._seen = _Seen(**{name: float(value) for name, value in state.items()})
+        found: dict[str, Any] = {name: v.copy() if v.ndim else float(v) for name, v in state.items()}
+        self._seen = _Seen(**found)
 
     def _watch_spread(self) -> None:
         simulation, seen = self._simulation, self._seen
@@ -133,7 +139,7 @@ class Milestones:
         simulation, seen = self._simulation, self._seen
         p = simulation.particles
         mass, doubled, _ = kinetics(p.mass, p.velocity)
-        speed = math.sqrt(doubled / mass)
+        speed = math.sqrt(doubled / mass) if mass else 0.0
         seen.fastest = max(seen.fastest, speed)
         passed, grown = seen.time - seen.look_time, seen.spread - seen.look_spread
         if passed > 0 and math.isfinite(grown):
@@ -142,18 +148,36 @@ class Milestones:
             below = seen.spread < T500_DIAMETER <= seen.spread + AHEAD * grown
             seen.close = float(below and math.isnan(seen.t500))
         seen.look_time, seen.look_spread = seen.time, seen.spread
-        keeps = self._keeps_its_spread()
+        keeps = self._keeps_its_lengths()
         if speed > SLOW * seen.fastest or not keeps or not simulation.settled:
             seen.quiet_since = math.nan
         elif math.isnan(seen.quiet_since):
             seen.quiet_since = seen.time
 
-    def _keeps_its_spread(self) -> bool:
-        """Whether the spread is still in its band, or has left it slowly; then a new band begins."""
-        seen, height = self._seen, self._simulation.case.height
-        seen.band_low, seen.band_high = min(seen.band_low, seen.spread), max(seen.band_high, seen.spread)
-        if seen.band_high - seen.band_low <= STILL * height:
+    def _keeps_its_lengths(self) -> bool:
+        """Whether the lengths are still in their band, or have left it slowly; then a new band begins."""
+        seen, simulation = self._seen, self._simulation
+        height, p = simulation.case.height, simulation.particles
+        if not len(p):
+            return False
+        lengths = np.nan_to_num([seen.spread, *centre_of_mass(simulation)])  # no spread along a periodic axis
+        if not len(seen.band_low):
+            seen.band_since, seen.band_low, seen.band_high = seen.time, lengths, lengths
+        seen.band_low, seen.band_high = (
+            np.minimum(seen.band_low, lengths),
+            np.maximum(seen.band_high, lengths),
+        )
+        allowed = np.full(len(lengths), STILL * simulation.measures.height(p))
+        allowed[0] = STILL * height
+        if not (seen.band_high - seen.band_low > allowed).any():
             return True
         slowly = (seen.time - seen.band_since) * seen.fastest >= height
-        seen.band_since, seen.band_low, seen.band_high = seen.time, seen.spread, seen.spread
+        seen.band_since, seen.band_low, seen.band_high = seen.time, lengths, lengths
         return slowly
+
+
+def centre_of_mass(simulation: Simulation) -> np.ndarray:
+    """The centre of mass along the axes that are neither periodic nor radial, m."""
+    p, along = simulation.particles, simulation.grid.periodic.copy()
+    along[0] |= simulation.case.space_.radial  # the centre is on the axis
+    return ((p.mass[:, None] * p.position).sum(axis=0) / p.mass.sum())[~along]

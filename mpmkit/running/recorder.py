@@ -11,6 +11,7 @@ from ..case.draining import drain_columns
 from ..case.forces import force_columns
 from ..case.model import Case
 from ..case.output import FRAMES, ROWS
+from ..case.sources import source_columns
 from ..case.state_variables import particle_variables
 from ..output import FrameWriter, History, RunDirectory, Variable
 from ..output.columns import COLUMNS, ledger_columns, wall_columns
@@ -60,6 +61,7 @@ class Recorder:
         axes, walls = case.space_.axes, simulation.wall_names
         columns = (
             *COLUMNS,
+            *source_columns(case),
             *force_columns(case),
             *drain_columns(case),
             *diagnostic_columns(case),
@@ -69,6 +71,7 @@ class Recorder:
         )
         self.history = History(columns, attributes, axes, variables, walls)
         self._wall_sums, self._sunk = simulation.wall_sums(), simulation.ledger.mass_out.copy()
+        self._fed = simulation.operations.sources.mass_in
         self._worked = simulation.force_work.copy()
         self._since = simulation.time
         self.frames = None if directory is None else FrameWriter(directory.frames, case.space_, goes_on)
@@ -153,6 +156,8 @@ class Recorder:
             "ledger_energy": account[:, ENERGY],
         }
         passed, self._since = simulation.time - self._since, simulation.time
+        if simulation.case.sources:
+            values |= self._source_means(passed)
         if simulation.case.varying_forces:
             values |= self._force_means(passed)
         if simulation.case.sinks:
@@ -167,6 +172,13 @@ class Recorder:
         self._last_row = simulation.steps
         if self.directory is not None and self.history.flush_if_due(self.directory.history):
             self._write_flow()
+
+    def _source_means(self, passed: float) -> dict[str, np.ndarray]:
+        """Mass brought in by each source, and its rate: the mean over the time since the last row, s."""
+        mass = self.simulation.operations.sources.mass_in
+        rate = (mass - self._fed) / passed if passed > 0 else np.zeros_like(mass)
+        self._fed = mass
+        return {"source_mass": mass, "source_rate": rate}
 
     def _force_means(self, passed: float) -> dict[str, np.ndarray]:
         """Work of each force, and its power: the mean over the time since the last row, s."""
@@ -205,8 +217,8 @@ class Recorder:
 
 def _by_number(field: np.ndarray, number: np.ndarray) -> np.ndarray:
     """A field with a row for every number up to the largest; NaN for particles that no longer exist."""
-    if len(number) == number.max() + 1:
+    if len(number) == number.max(initial=-1) + 1:
         return field[np.argsort(number)]
-    found = np.full((int(number.max()) + 1, *field.shape[1:]), np.nan)
+    found = np.full((int(number.max(initial=-1)) + 1, *field.shape[1:]), np.nan)
     found[number] = field
     return found

@@ -23,6 +23,7 @@ def setting(case: Case) -> list[str]:
         *case.grid.extensions,
         *_floor_and_release(case),
         *wall_sentences(case),
+        *_inflows(case),
         *([] if end is None else [end]),
     ]
 
@@ -37,7 +38,7 @@ def _floor_and_release(case: Case) -> list[str]:
     if face in ("open", "periodic"):
         return []
     said = [f"floor: {name} is {_in_words(face)}"]
-    if any(body.largest_speed for body in case.bodies):
+    if not case.bodies or any(map(case.speed_at_start, case.bodies)):
         return said
     if case.walls:
         names = ", ".join(f"walls.{name}" for name in case.walls)
@@ -54,6 +55,20 @@ def _floor_and_release(case: Case) -> list[str]:
         said.append(
             "release: the material is free from t = 0 on, at once; a T500 measured in a laboratory also "
             "includes the time in which the cone is lifted"
+        )
+    return said
+
+
+def _inflows(case: Case) -> list[str]:
+    """What comes in by the end of the run, of each source."""
+    said = []
+    for name, one in case.sources.items():
+        area, density = case.mouth_area(name), one.material.density
+        mass = density * area * one.source.pushed(case.end, area, density)
+        fastest = case.source_speed(name, 0.0, case.end)
+        said.append(
+            f"sources.{name}: {mass:.4g} kg of {one.material.law} come in by t = {case.end:g} s, through "
+            f"{area:.4g} m², at up to {fastest:.4g} m/s"
         )
     return said
 

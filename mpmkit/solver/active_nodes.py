@@ -25,6 +25,7 @@ class ActiveNodes:
     """Rows of nodes that the kernels process, and the ghosts and images among them.
 
     Attributes:
+        mask: ``(nodes,)``, whether particles can touch each node of the window, or its image or ghost.
         rows: ``(n, 2)``, the first node and the one after the last of every row along the last axis.
         tasks: ``(TASKS + 1,)``, rows cut into pieces of about equal load.
         faces: ``(dim, 2)``, the codes of the faces.
@@ -49,6 +50,7 @@ class ActiveNodes:
         for k, plane in enumerate(planes):
             _close(touched, k // PLANES, plane)
         self.rows = _rows(touched)
+        self.mask = touched.ravel()
         self.tasks = cuts(np.concatenate([[0], np.cumsum(self.rows[:, 1] - self.rows[:, 0])]))
         self.faces = window.grid.faces
         mirrors = [_mirrors(window, touched, k // PLANES, plane) for k, plane in enumerate(planes)]

@@ -60,11 +60,11 @@ class EnergyBalance:
         self.most_excess = 0.0
         self._hard = False
         self._looks_too_high = 0
-        mass = float(np.sum(particles.mass))
         self._wave_speed = max(group.wave_speed for group in particles.groups)
         falling = strength * grid.cell_size
         # Negligible: the energy of a fall by one cell or, without gravity, of rounding.
-        self._least = mass * (falling + ROUNDING * self._wave_speed**2)
+        self._negligible = falling + ROUNDING * self._wave_speed**2
+        self._least = float(np.sum(particles.mass)) * self._negligible
 
     def state(self) -> State:
         """All its numbers."""
@@ -77,6 +77,7 @@ class EnergyBalance:
     def update(self, p: Particles, energy: np.ndarray) -> None:
         """Record the energies by cause, J, of the present state."""
         self._first, self.redistributed = float(energy[START]), float(energy[REDISTRIBUTION])
+        self._least = max(self._least, float(np.sum(p.mass)) * self._negligible)
         self.held = float(energy.sum())
         work = float(energy[[IN, GRAVITY, FORCES, WALLS, REFINEMENT]].sum())
         self._most_work = max(self._most_work, abs(work))
@@ -95,7 +96,7 @@ class EnergyBalance:
     @property
     def excess(self) -> float:
         """Created energy, relative to the supplied energy."""
-        return self.created / self.supply
+        return self.created / self.supply if self.supply else 0.0  # nothing has come in yet
 
     @property
     def broken(self) -> bool:

@@ -49,7 +49,7 @@ class Drains:
         stays = by < 0
         if stays.all():
             return False
-        if not all(stays[group.part].any() for group in p.groups):
+        if any(len(stays[group.part]) and not stays[group.part].any() for group in p.groups):
             names = list(self._sinks)
             used = " and ".join(f"sinks.{names[index]}" for index in np.unique(by[~stays]))
             self.emptied = f"all of a material has left through {used}"

@@ -18,7 +18,7 @@ def kinetic_energy(p: Particles) -> float:
 def strain_energy(p: Particles) -> float:
     """Elastic energy of shape, of all laws."""
     total = 0.0
-    for group in p.groups:
+    for group in p.present_groups:
         volume = p.initial_volume[group.part]
         law = group.law
         density = law.strain_energy(p.kinematics(group), group.state, p.stress[group.part])
@@ -35,7 +35,7 @@ def strain_energy(p: Particles) -> float:
 def compressive_energy(p: Particles) -> float:
     """Energy stored by the equations of state."""
     total = 0.0
-    for group in p.groups:
+    for group in p.present_groups:
         if group.law.uses_equation_of_state:
             volume = p.initial_volume[group.part]
             author = group.equation_of_state

@@ -99,6 +99,15 @@ class Ledger:
         self.entries[OUT] += gone
         self._height += potential_energy(p, self._downwards) - height
 
+    def brought_in(self, before: np.ndarray, height: float, p: Particles, mass: float, time: float) -> None:
+        """Record what came in through sources, ``mass``, given the amounts before."""
+        self._mass_time += (time - self._changed) * self.mass
+        self._changed = time
+        came = present(p) - before
+        came[MASS] = mass
+        self.entries[IN] += came
+        self._height += potential_energy(p, self._downwards) - height
+
     def height(self, p: Particles) -> float:
         """Potential energy of the particles, J, along axes that are not periodic."""
         return potential_energy(p, self._downwards)
@@ -110,8 +119,8 @@ class Ledger:
         Args:
             p: the particles.
             time: s.
-            given: momentum, N s, ``(dim,)``, and energy, J, that forces, walls and
-                redistributions have given so far.
+            given: momentum, N s, ``(dim,)``, and energy, J, that forces, walls, redistributions and the
+                columns of sources have given so far.
         """
         now = present(p)
         if not self.begun:
@@ -123,7 +132,8 @@ class Ledger:
         worked = self._height - potential_energy(p, self._downwards)
         found[GRAVITY, ENERGY] = worked + self._worked_along(p, time)
         for cause, (momentum, energy) in given.items():
-            found[cause, 1:-1], found[cause, ENERGY] = momentum, energy
+            found[cause, 1:-1] += momentum
+            found[cause, ENERGY] += energy
         found[REST] = now - found[:REST].sum(axis=0)
         return found
 

@@ -53,6 +53,9 @@ class Measures:
             particles.position, particles.box, grid.dim, grid.extent, grid.periodic, grid.cell_size / 2
         )
         planes = [_symmetry_plane(case, grid, a) for a in range(grid.dim - 1)]
+        if not len(particles):  # a scene that begins empty: what comes in is measured at its first mouth
+            mouth = next(iter(case.mouths.values()))
+            ends = np.tile((np.array(mouth.centre) - grid.lower)[:, None], 2)
         middle = ends[:-1].mean(axis=1)
         axis = np.array([m if plane is None else plane for plane, m in zip(planes, middle, strict=True)])
         return cls(case, grid, float(ends[-1, 1]), axis, planes)
@@ -79,7 +82,7 @@ class Measures:
             "compressive_energy": compressive_energy(p),
             "total_mass": float(np.sum(p.mass)),
             "momentum": np.sum(p.mass[:, None] * p.velocity, axis=0),
-            "max_speed": float(np.sqrt(squared.max())),
+            "max_speed": float(np.sqrt(squared.max(initial=0.0))),
             "fractured_fraction": self.fractured(p),
             "density_mean": filled.mean,
             "density_worst": filled.worst,
@@ -105,7 +108,7 @@ class Measures:
         them."""
         longest = p.box.max(axis=1)
         apart = longest > self.grid.cell_size / 2 * (1 + 1e-9)
-        return float(np.sum(p.volume[apart]) / np.sum(p.volume))
+        return float(np.sum(p.volume[apart]) / np.sum(p.volume)) if len(p) else 0.0
 
     def _height(self, p: Particles, of: np.ndarray) -> float:
         """Top of some particles above the grid's lower face, m; NaN if there are none."""

@@ -9,6 +9,7 @@ import numpy as np
 from ..case.model import Case
 from ..case.output import ROWS
 from ..case.plugins import plugins_of
+from ..case.sources import row_length, section_of
 from ..case.state_variables import particle_variables
 from ..contracts.law import initial_state
 from ..errors import CaseError
@@ -40,8 +41,8 @@ MARGIN = 5
 
 
 def expected_particles(case: Case) -> float:
-    """Number of particles of a case, from the exact volumes of its bodies."""
-    return sum(
+    """Number of particles of a case: of its bodies, from their exact volumes, and of all that comes in."""
+    return incoming_particles(case) + sum(
         expected_count(
             body.shape,
             case.space_,
@@ -50,6 +51,16 @@ def expected_particles(case: Case) -> float:
             keep=case.domain_bounds,
         )
         for body in case.bodies
+    )
+
+
+def incoming_particles(case: Case) -> float:
+    """Number of particles that sources bring in by the end of the run."""
+    return sum(
+        len(section_of(case, name).area)
+        * one.source.pushed(case.end, case.mouth_area(name), one.material.density)
+        / row_length(case, name)
+        for name, one in case.sources.items()
     )
 
 
@@ -106,23 +117,23 @@ def _doubles_per_node(case: Case) -> float:
     if not redistributes(case.scheme.redistribution):
         return DOUBLES_PER_NODE
     dim = case.space_.dim
-    finest = max(max(body.particles_along_axes(dim)) for body in case.bodies)
+    finest = max(max(one.particles_along_axes(dim)) for one in case.filled)
     return DOUBLES_PER_NODE + MIRRORED * (1 + finest**dim)
 
 
 def _state_doubles(case: Case) -> int:
     """Doubles that a particle carries from step to step."""
     dim = case.space_.dim
-    laws = [body.material.constitutive_law for body in case.bodies]
+    laws = [material.constitutive_law for material in case.materials.values()]
     with blaming_plugins(plugins_of(case)):  # plug-ins define what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
-    number_mass_volumes_pressures_rate_parts = 10
+    number_mass_volumes_pressures_rate_parts_age = 11
     vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     return (
-        number_mass_volumes_pressures_rate_parts
+        number_mass_volumes_pressures_rate_parts_age
         + vectors
         + affine
         + gradient_and_stress
@@ -132,7 +143,8 @@ def _state_doubles(case: Case) -> int:
 
 
 def window_nodes(case: Case) -> float:
-    """Nodes that are stored when a run begins: those around the bodies, and a quarter more."""
+    """Nodes that are stored: those around the bodies at the start, or the mouths and the material that comes
+    in, and a quarter more."""
     lower, upper = _extent(case)
     return 1.25 * float(np.prod((upper - lower) / case.grid.cell_size + MARGIN))
 
@@ -140,6 +152,10 @@ def window_nodes(case: Case) -> float:
 def _extent(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner, m, of the box around all bodies, cut at the domain."""
     bounds = [body.shape.bounds(case.space_) for body in case.bodies]
+    bounds += [
+        (np.array(mouth.centre) - mouth.half_width, np.array(mouth.centre) + mouth.half_width)
+        for mouth in case.mouths.values()
+    ]
     domain_lower, domain_upper = case.domain_bounds
     lower = np.maximum(np.min([low for low, _ in bounds], axis=0), domain_lower)
     upper = np.minimum(np.max([high for _, high in bounds], axis=0), domain_upper)
@@ -210,7 +226,7 @@ def _too_wide(case: Case, needed: float, left: str) -> str:
     """The sentence if the nodes around and between the bodies need the memory, and not the particles."""
     lower, upper = _extent(case)
     spans = " × ".join(f"{span:.4g}" for span in upper - lower)
-    between = ", the gap between them included," if len(case.bodies) > 1 else ""
+    between = ", the gap between them included," if len(case.filled) > 1 else ""
     closer = ", or bring the bodies closer together" if between else ""
     return (
         f"grid.cell_size is {case.grid.cell_size:g} m, and the window over all bodies{between} spans "

@@ -22,6 +22,7 @@ from .particles import Group, Particles
 from .redistribution import Stage
 from .relaxation import Relaxation
 from .sorting import Sorting
+from .sources import Sources
 from .stateful import State, Stateful, plain_state, restore, restore_plain, state_of
 from .touch import Touch
 from .walls import Faces, Walls
@@ -50,9 +51,12 @@ class SceneOperations:
         self.forces = Forces(case, grid, particles)
         self.walls = Walls(case, grid, self.window, particles)
         self.faces = Faces(grid)
-        self.stage = Stage(scheme, grid, self.walls, particles, radial, case.gravity_vector)
+        self.sources = Sources(case, grid, self.window, particles)
+        spacing = min(grid.cell_size / min(one.particles_along_axes(dim)) for one in case.filled)
+        self.stage = Stage(scheme, grid, self.walls, particles, radial, case.gravity_vector, spacing)
         support = scheme.shape.support
-        self._scatter, self._gather = scatter(dim, support), gather(dim, support)
+        self._scatter = scatter(dim, support)
+        self._gather = gather(dim, support, scheme.velocity.affine)
         self._gradient_due = False
         self._begun = 0
         self._auditing = self._rehearsing = True
@@ -107,6 +111,7 @@ class SceneOperations:
             "forces": self.forces,
             "walls": self.walls,
             "faces": self.faces,
+            "sources": self.sources,
         }
 
     def state(self) -> State:
@@ -180,6 +185,7 @@ class SceneOperations:
         """One step of the chosen order."""
         self._account.begin()
         self.forces.act(self.time, dt)
+        self.sources.begin(self.time, dt, self.sorting)
         try:
             self.scheme.order.step(self._for_order, dt)
         except PluginFault:  # wrong weights may be the real cause of the fault
@@ -222,6 +228,7 @@ class SceneOperations:
             p.mass, p.velocity, p.affine, volume, p.stress, p.mapped_pressure,
             self.forces.acceleration, self.cell_size, momentum, forces,
         )  # fmt: skip
+        self.sources.map(momentum, forces, self.forces.acceleration)
 
     def _fold(self, first: int, last: int) -> None:
         active = self.sorting.active
@@ -240,13 +247,16 @@ class SceneOperations:
         if self.walls.touched:
             self.walls.constrain(self.faces.given(dt is not None), dt, self._rehearsing)
             self.faces.fill(self.window, self.sorting.active, dt)
+        self.sources.carry(dt)
 
     # --- Nodes
 
     @property
     def mapped_mass(self) -> float | None:
         """Mass mapped to the nodes in the last step, kg; None if there was no step since they were made."""
-        return float(self.window.nodes[:, 0].sum()) if self._stepped else None
+        if not self._stepped:
+            return None
+        return float(self.window.nodes[:, 0].sum()) - self.sources.mapped_mass
 
     def solve_momentum(self, dt: float) -> None:
         self._account.solved(dt)
@@ -293,6 +303,7 @@ class SceneOperations:
             raise PluginFault(self.scheme.velocity, f"asked for a flip of {flip}; it must be a finite number")
         self.walls.taken_up(flip)
         self.faces.taken_up(1 - flip)
+        self.sources.taken_up(flip)
         self._take(dt=dt, flip=flip, move=True, strain=self._gradient_due, affine=affine)
         self._gradient_due = False
 
@@ -320,9 +331,10 @@ class SceneOperations:
     def update_stress(self, dt: float) -> None:
         p = self.particles
         self._account.stressed(dt)
+        p.age += dt
         self._update_volumes(dt)
         self._follow_domains(dt)
-        for group in p.groups:
+        for group in p.present_groups:
             self._update_law(group, dt)
 
     def _update_law(self, group: Group, dt: float) -> None:
@@ -343,7 +355,7 @@ class SceneOperations:
         volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
-        for group in p.groups:
+        for group in p.present_groups:
             part = group.part
             if group.law.uses_equation_of_state:
                 volumes.assign(p.pressure[part], self._pressure(group, p.volume_ratio[part]))
@@ -369,7 +381,7 @@ class SceneOperations:
         if not self.scheme.redistribution.equal_boxes:
             self._follow_deformation(slice(0, len(p)), dt)
         elif not self._all_fluid:
-            for group in p.groups:
+            for group in p.present_groups:
                 if not group.law.uses_equation_of_state:
                     self._follow_deformation(group.part, dt)
         self.stage.follow(dt)

@@ -29,7 +29,7 @@ def yielded(p: Particles) -> np.ndarray:
     """
     stress, rate = shear_stress(p), shear_rate(p.velocity_gradient)
     found = np.zeros(len(p), dtype=np.int32)
-    for group in p.groups:
+    for group in p.present_groups:
         part, limit = group.part, group.law.yield_point(group.state)
         if limit is None:
             found[part] = rate[part] > 0
@@ -49,6 +49,7 @@ PARTICLE_FIELDS: dict[str, Callable[[Particles, Grid], np.ndarray]] = {
     "shear_rate": lambda p, grid: shear_rate(p.velocity_gradient),
     "shear_stress": lambda p, grid: shear_stress(p),
     "yielded": lambda p, grid: yielded(p),
+    "age": lambda p, grid: p.age,
 }
 """Particle fields that a history can keep, besides the state variables."""
 
@@ -61,13 +62,12 @@ def history_fields(scene: SceneView) -> dict[str, np.ndarray]:
     """
     case, p = scene.case, scene.particles
     names = case.output.particle_history
-    others = [name for name in names if name not in PARTICLE_FIELDS]
+    former = former_names(case)
+    own = [name for name in names if name in PARTICLE_FIELDS and name not in former | case.output.fields]
+    others = [name for name in names if name not in own]
     known = state_fields(p) | added_fields(scene, others) if others else {}
-    former = former_names(case) if others else {}
     return {
-        name: PARTICLE_FIELDS[name](p, scene.grid)
-        if name in PARTICLE_FIELDS
-        else known[former.get(name, name)]
+        name: PARTICLE_FIELDS[name](p, scene.grid) if name in own else known[former.get(name, name)]
         for name in names
     }
 
@@ -100,6 +100,7 @@ def frame_fields(scene: SceneView) -> dict[str, np.ndarray]:
         "yielded": yielded(p),
         "volume_ratio": p.volume_ratio,
         "half_size": p.box,
+        "age": p.age,
         "body": p.body,
         "particle": p.number,
         **state_fields(p),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..contracts import ConstitutiveLaw, EquationOfState, Kinematics
+from ..contracts.law import initial_state
 from ..contracts.scale import Scale
 from ..errors import PluginFault
 from ..kernels.sort import permute
@@ -102,6 +103,8 @@ class Particles:
     deformation_gradient: np.ndarray | None
     portion: np.ndarray
     """(n,) share of an initial particle: 1 at the start, halved by a split, summed by a merge"""
+    age: np.ndarray
+    """(n,) time since a particle came in, or since the start, s"""
     groups: list[Group] = field(default_factory=list)
     time: float = 0.0
     """s, at the start of the present step"""
@@ -114,6 +117,11 @@ class Particles:
     @property
     def dim(self) -> int:
         return self.position.shape[1]
+
+    @property
+    def present_groups(self) -> list[Group]:
+        """The groups that have particles; a material may not have come in yet."""
+        return [group for group in self.groups if group.part.stop > group.part.start]
 
     def arrays(self) -> dict[str, np.ndarray]:
         """Every array with one entry per particle, by name."""
@@ -150,6 +158,19 @@ class Particles:
             group.state = {name: array[local] for name, array in group.state.items()}
             group.part = slice(int(start), int(stop))
 
+    def add(self, index: int, new: Particles) -> None:
+        """Add particles at the end of a group, with the state in which its law begins."""
+        at, count = self.groups[index].part.stop, len(new)
+        added = new.arrays()
+        for name, array in self.arrays().items():
+            setattr(self, name, np.concatenate([array[:at], added[name], array[at:]]))
+        group = self.groups[index]
+        start = initial_state(group.law, count)
+        group.state = {name: np.concatenate([array, start[name]]) for name, array in group.state.items()}
+        group.part = slice(group.part.start, at + count)
+        for later in self.groups[index + 1 :]:
+            later.part = slice(later.part.start + count, later.part.stop + count)
+
     def new_numbers(self, count: int) -> np.ndarray:
         """New particle numbers, never used before."""
         self._count_numbers()
@@ -182,6 +203,7 @@ class Particles:
             density=group.density,
             sound_speed=group.sound_speed,
             deformation_gradient=None if F is None else F[part],
+            age=self.age[part] if group.law.needs_age else None,
             time=self.time,
         )
 
@@ -192,6 +214,8 @@ class Particles:
         Raises:
             PluginFault: the law returns no valid speed.
         """
+        if group.part.start == group.part.stop:
+            return group.wave_speed
         given = group.law.present_wave_speed(self.kinematics(group), group.state)
         speed = require_number(group.law, "present_wave_speed", given)
         if not speed >= 0:

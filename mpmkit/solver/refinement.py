@@ -38,7 +38,7 @@ class Refiner:
         self.dim = grid.dim
         self._author = case.scheme.refinement
         self._grid, self._particles, self._radial = grid, particles, case.space_.radial
-        along_axes = [body.particles_along_axes(grid.dim) for body in case.bodies]
+        along_axes = [body.particles_along_axes(grid.dim) for body in case.filled]
         self._full = np.array([int(np.prod(counts)) for counts in along_axes])
         self.acts = refines(self._author)
 

@@ -42,14 +42,14 @@ def put_under_weight(case: Case, grid: Grid, particles: Particles) -> bool:
     if weight is None:
         return False
     ratio = np.empty_like(weight)
-    for group in particles.groups:
+    for group in particles.present_groups:
         found = ratio_under(group, weight[group.part])
         if found is None:
             return False
         ratio[group.part] = found
     particles.volume_ratio[:] = ratio
     particles.volume[:] = ratio * particles.initial_volume
-    for group in particles.groups:
+    for group in particles.present_groups:
         particles.pressure[group.part] = group.pressure(ratio[group.part])
     return True
 

@@ -25,39 +25,77 @@ in two dimensions, at this width, to 0.42 of dx/c.
 """
 
 
-def make_particles(case: Case) -> Particles:
-    """Fill the bodies with particles; bodies of the same material share a group."""
+def materials_of(case: Case) -> list[Material]:
+    """The different materials of a case, in the order of their groups of particles."""
     materials: list[Material] = []
-    for body in case.bodies:
-        if body.material not in materials:
-            materials.append(body.material)
+    for material in case.materials.values():
+        if material not in materials:
+            materials.append(material)
+    return materials
+
+
+def make_particles(case: Case) -> Particles:
+    """Fill the bodies with particles; bodies and sources of the same material share a group."""
+    materials = materials_of(case)
     bodies = [
         (number, body) for m in materials for number, body in enumerate(case.bodies) if body.material == m
     ]
     _refuse_overlaps(case)
     samples = [_sample_body(case, number) for number, _ in bodies]
     refuse_overlaps_with_walls(case, zip((number for number, _ in bodies), samples, strict=True))
-    counts = [len(found.volume) for found in samples]
+    counts = np.array([len(found.volume) for found in samples], dtype=np.int64)
 
     lower, _ = case.domain_bounds
-    position = np.concatenate([found.position for found in samples])
-    volume = np.concatenate([found.volume for found in samples])
-    half_size = np.concatenate([found.half_size for found in samples])
+    nowhere = np.empty((0, case.space_.dim))
+    velocities = [
+        _initial_velocity(body, found.position) for (_, body), found in zip(bodies, samples, strict=True)
+    ]
+    particles = fresh_particles(
+        case,
+        number=np.arange(counts.sum(), dtype=np.int64),
+        body=np.repeat(np.array([number for number, _ in bodies], dtype=np.int32), counts),
+        position=np.concatenate([nowhere, *(found.position for found in samples)]) - lower,
+        velocity=np.concatenate([nowhere, *velocities]),
+        density=np.repeat(np.array([body.material.density for _, body in bodies]), counts),
+        volume=np.concatenate([np.empty(0), *(found.volume for found in samples)]),
+        half_size=np.concatenate([nowhere, *(found.half_size for found in samples)]),
+    )
+    start = 0
+    for material in materials:
+        end = start + sum(c for c, (_, body) in zip(counts, bodies, strict=True) if body.material == material)
+        particles.groups.append(material_group(case, material, slice(start, end)))
+        start = end
+    return particles
+
+
+def fresh_particles(
+    case: Case,
+    number: np.ndarray,
+    body: np.ndarray,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    density: np.ndarray,
+    volume: np.ndarray,
+    half_size: np.ndarray,
+) -> Particles:
+    """Particles in the state in which material begins, without groups.
+
+    Args:
+        case: defines which arrays the schemes need.
+        number, body: ``(n,)`` integers.
+        position, velocity, half_size: ``(n, dim)``, m and m/s, positions from the grid's lower corner.
+        density, volume: ``(n,)``, kg/m³ and m³.
+    """
     n = len(position)
     rule = audit.particle_domain(case.scheme.shape)
     affine = case.space_.dim if case.scheme.velocity.affine else 0
-    particles = Particles(
-        number=np.arange(n, dtype=np.int64),
-        body=np.repeat(np.array([number for number, _ in bodies], dtype=np.int32), counts),
-        position=position - lower,
-        velocity=np.concatenate(
-            [
-                _initial_velocity(body, found.position)
-                for (_, body), found in zip(bodies, samples, strict=True)
-            ]
-        ),
+    return Particles(
+        number=number,
+        body=body,
+        position=position,
+        velocity=velocity,
         affine=np.zeros((n, affine, affine)),
-        mass=np.repeat([body.material.density for _, body in bodies], counts) * volume,
+        mass=density * volume,
         initial_volume=volume,
         volume=volume.copy(),
         volume_ratio=np.ones(n),
@@ -74,19 +112,14 @@ def make_particles(case: Case) -> Particles:
         quadrature=np.ones(n),
         deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
         portion=np.ones(n),
+        age=np.zeros(n),
     )
-    start = 0
-    for material in materials:
-        end = start + sum(c for c, (_, body) in zip(counts, bodies, strict=True) if body.material == material)
-        particles.groups.append(material_group(case, material, slice(start, end)))
-        start = end
-    return particles
 
 
 def tracks_deformation(case: Case) -> bool:
     """Whether the particles of a case carry a deformation gradient."""
     return case.scheme.shape.particle_domain == "stretch" or any(
-        body.material.constitutive_law.needs_deformation_gradient for body in case.bodies
+        material.constitutive_law.needs_deformation_gradient for material in case.materials.values()
     )
 
 

@@ -17,7 +17,7 @@ from .diagnosed import diagnosed
 from .draining import Drains
 from .grid import Grid
 from .guards import Guards, stop
-from .ledger import FORCES, REDISTRIBUTION, WALLS, Ledger, present
+from .ledger import FORCES, IN, REDISTRIBUTION, WALLS, Ledger, present
 from .measures import Measures
 from .operations import SceneOperations
 from .particles import Particles
@@ -128,8 +128,10 @@ class Simulation:
         p = self.particles
         mass, doubled, square = kinetics(p.mass, p.velocity)
         ahead = self.time + self._interval * getattr(self, "time_step", 0.0)
-        speed = max(math.sqrt(square), self.operations.walls.fastest(self.time, ahead))
+        driven = (self.operations.walls, self.operations.sources)
+        speed = max(math.sqrt(square), *(one.fastest(self.time, ahead) for one in driven))
         self.mach_number = mach_number(p, speed)
+        mass = mass or 1.0  # a scene may begin empty
         waves = [(group, p.wave_speed(group)) for group in p.groups]
         periods = [shortest_period(force) for force in self.case.varying_forces.values()]
         self.limits = limits(waves, self.grid.cell_size, speed, self.case.scale.rate, periods)
@@ -191,6 +193,8 @@ class Simulation:
 
     def _advance(self, at_most: float) -> float:
         self.prepare()
+        if not len(self.particles):
+            return self._wait(min(self.time_step, at_most))
         try:
             lost = self.operations.begin(self.time)
         except Scattered as error:
@@ -205,7 +209,17 @@ class Simulation:
         self.particles.time = self.time
         self.steps += 1
         self.particle_steps += len(self.particles)
-        if self.drains.take_out(self.time):
+        came_in = self.operations.sources.bring_in(self.time, dt, self.ledger)
+        if self.drains.take_out(self.time) or came_in:
+            self._renew()
+        return dt
+
+    def _wait(self, dt: float) -> float:
+        """A step of an empty scene, in which something may come in."""
+        self.time += dt
+        self.particles.time = self.time
+        self.steps += 1
+        if self.operations.sources.bring_in(self.time, dt, self.ledger):
             self._renew()
         return dt
 
@@ -224,12 +238,13 @@ class Simulation:
     def _follow_flow(self) -> None:
         """Recompute the sound speeds that follow the flow."""
         case, elapsed = self.case, self._interval * self.time_step
+        goes_on = self.operations.sources.goes_on(self.time)
         driving = case.gravity_vector, case.largest_forces
-        follow_flow(self.particles, self.grid, *driving, self._first_sound_speeds, elapsed)
+        follow_flow(self.particles, self.grid, *driving, self._first_sound_speeds, elapsed, goes_on)
 
     def _refine(self) -> None:
         """Let the refinement split and merge particles."""
-        if not self.refiner.acts:
+        if not self.refiner.acts or not len(self.particles):
             return
         p = self.particles
         before, height = present(p), self.ledger.height(p)
@@ -250,6 +265,8 @@ class Simulation:
             "time_step": self.time_step,
             "mach_number": self.mach_number,
         }
+        if self.case.sources:
+            found["mass_in"] = float(self.operations.sources.mass_in.sum())
         if self.case.sinks:
             found["mass_out"] = float(self.ledger.mass_out.sum())
         with self.blaming:
@@ -257,12 +274,13 @@ class Simulation:
 
     def account(self) -> np.ndarray:
         """Mass, momentum and energy by cause, ``(causes, 2 + dim)``, see ``ledger.Ledger``."""
-        dim, stage = self.grid.dim, self.operations.stage
+        dim, stage, sources = self.grid.dim, self.operations.stage, self.operations.sources
         forces = self.operations.forces
         by_cause = {
             FORCES: (forces.impulse.sum(axis=0), float(forces.work.sum())),
             WALLS: (self._impulse_of_walls(dim), self.walls_work),
             REDISTRIBUTION: (stage.momentum, stage.energy),
+            IN: (sources.impulse, sources.work),
         }
         return self.ledger.account(self.particles, self.time, by_cause)
 

@@ -26,6 +26,7 @@ def follow_flow(
     forces: np.ndarray,
     first: list[float | None],
     elapsed: float,
+    more_comes: bool = False,
 ) -> None:
     """Move c of every material that follows the flow towards √(2 e) / mach.
 
@@ -38,9 +39,12 @@ def follow_flow(
         forces: ``(dim,)``, m/s², upper bounds of what other forces are along each axis.
         first: c of each material at the start, m/s.
         elapsed: time since the last change, s.
+        more_comes: whether sources will bring in more; c is then at least that of the start, which knows
+            their speed and height.
     """
-    if all(group.mach is None for group in particles.groups):
+    if not len(particles) or all(group.mach is None for group in particles.groups):
         return
+    slowest = 1.0 if more_comes else SLOWEST
     extent = np.ptp(particles.position, axis=0)
     length = float(extent.max())
     of_forces = float(forces @ np.where(grid.periodic, 0.0, extent))
@@ -49,7 +53,7 @@ def follow_flow(
         if group.mach is not None and at_start is not None:
             speed = group.sound_speed
             assert speed is not None
-            wanted = max(fastest / group.mach, SLOWEST * at_start)
+            wanted = max(fastest / group.mach, slowest * at_start)
             most = math.exp(CHANGE * elapsed * speed / max(length, grid.cell_size))
             _change_sound(particles, group, min(max(wanted, speed / most), speed * most))
 
@@ -89,7 +93,7 @@ def largest_energy(particles: Particles, grid: Grid, gravity: np.ndarray) -> flo
     downwards = np.where(grid.periodic, 0.0, gravity)
     potential, of_box = -particles.position @ downwards, particles.box @ np.abs(downwards)
     moving = 0.5 * np.einsum("pi,pi->p", particles.velocity, particles.velocity)
-    for group in particles.groups:
+    for group in particles.present_groups:
         part = group.part
         stored = group.law.strain_energy(particles.kinematics(group), group.state, particles.stress[part])
         if group.law.uses_equation_of_state:

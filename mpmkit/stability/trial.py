@@ -35,8 +35,9 @@ class Trace:
 
 def trace(case: Case, fraction: float) -> Trace:
     """Run a case with ``fraction`` of the smallest limit that it does not ignore, even if it is unstable."""
-    if case.sinks:
-        raise CaseError("stability follows every particle to the end: leave out sinks")
+    for key in ("sinks", "sources"):
+        if getattr(case, key):
+            raise CaseError(f"stability follows every particle to the end: leave out {key}")
     simulation = Simulation(case, fraction=fraction)
     simulation.guards.watches_energy = False  # the judge checks it more strictly
     simulation.guards.watches_density = False  # its errors do not depend on the step

@@ -21,6 +21,7 @@ from ..contracts import (
     Refinement,
     ShapeFunction,
     Sink,
+    Source,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -42,6 +43,7 @@ from . import (
     refinement,
     shapes,
     sinks,
+    sources,
     surfaces,
     volumetric,
 )
@@ -136,6 +138,7 @@ ON_BODY_FORCES = (
 )
 ON_INITIAL_FIELDS = (initial_fields.arrays, initial_fields.batch_order)
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
+ON_SOURCES = (sources.pushes, sources.fastest, sources.remembers_nothing)
 ON_DIAGNOSTICS = (
     measured.declares,
     measured.numbers,
@@ -283,6 +286,20 @@ def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
                 for check in ON_SINKS
                 for space in homes
             ),
+        ],
+    )
+
+
+def source_checks(source: Source, *, size: float = 1.0) -> list[Check]:
+    """What every source must do, and its mouth in each space that can have it; see ``source_tests``."""
+    homes = sources.at_home(source, size)
+    return _of(
+        "source",
+        source,
+        [
+            ("home", partial(sources.home, source, size)),
+            *((f"mouth {space.name}", partial(sources.mouth, source, space, size)) for space in homes),
+            *((check.__name__, partial(check, source)) for check in ON_SOURCES),
         ],
     )
 

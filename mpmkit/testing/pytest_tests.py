@@ -16,6 +16,7 @@ from ..contracts import (
     Refinement,
     ShapeFunction,
     Sink,
+    Source,
     Surface,
     UpdateOrder,
     VelocityUpdate,
@@ -35,6 +36,7 @@ from .checks import (
     refinement_checks,
     shape_checks,
     sink_checks,
+    source_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -192,6 +194,19 @@ def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
         size: m; the grid reaches so far from the origin along each axis, and places half as far again.
     """
     return _tests(sink_checks(sink, size=size))
+
+
+def source_tests(source: Source, *, size: float = 1.0) -> Test:
+    """A test function, as that of ``law_tests``, for a source, with its mouth in each space that can have it.
+
+    Its column never moves back, is no faster than it says, and is where it is at a time whatever it was asked
+    before.
+
+    Args:
+        source: with parameters.
+        size: m; the grid reaches so far from the origin along each axis.
+    """
+    return _tests(source_checks(source, size=size))
 
 
 def diagnostic_tests(diagnostic: Diagnostic) -> Test:

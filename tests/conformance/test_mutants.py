@@ -16,6 +16,7 @@ import redistribution_mutants
 import refinement_mutants
 import shape_mutants
 import sink_mutants
+import source_mutants
 import surface_mutants
 import velocity_mutants
 import volumetric_mutants
@@ -37,6 +38,7 @@ from mpmkit.testing import (
     refinement_checks,
     shape_checks,
     sink_checks,
+    source_checks,
     surface_checks,
     velocity_checks,
     volumetric_checks,
@@ -198,10 +200,11 @@ CHECKS = {
     "body_force": body_force_checks,
     "initial_field": initial_field_checks,
     "sink": sink_checks,
+    "source": source_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "body_force", "initial_field", "sink", "diagnostic")
+NEED_PARAMETERS = ("surface", "contact", "body_force", "initial_field", "sink", "source", "diagnostic")
 """Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
@@ -308,6 +311,21 @@ OTHER_MUTANTS = [
     ("sink", sink_mutants.Everything, "takes something axisymmetric"),
     ("sink", sink_mutants.Lowest, "batch order plane-strain"),
     ("sink", sink_mutants.Pulls, "batch order plane-strain"),
+    ("source", source_mutants.Nowhere, "home"),
+    ("source", source_mutants.SaysNothing, "home"),
+    ("source", source_mutants.NoMouth, "mouth 3d"),
+    ("source", source_mutants.Thick, "mouth plane-strain"),
+    ("source", source_mutants.Sideways, "mouth axisymmetric"),
+    ("source", source_mutants.Unsigned, "mouth 3d"),
+    ("source", source_mutants.Sucks, "pushes"),
+    ("source", source_mutants.Idle, "pushes"),
+    ("source", source_mutants.TooEarly, "pushes"),
+    ("source", source_mutants.Endless, "pushes"),
+    ("source", source_mutants.EndsFirst, "pushes"),
+    ("source", source_mutants.AText, "pushes"),
+    ("source", source_mutants.Slower, "fastest"),
+    ("source", source_mutants.Runs, "fastest"),
+    ("source", source_mutants.Counts, "remembers nothing"),
     ("diagnostic", diagnostic_mutants.Nowhere, "home"),
     ("diagnostic", diagnostic_mutants.SaysNothing, "home"),
     ("diagnostic", diagnostic_mutants.NoUnit, "declares plane-strain"),
@@ -344,6 +362,7 @@ OTHER_MUTANTS = [
         ("body_force", body_force_mutants.Pulse),
         ("initial_field", initial_field_mutants.Rising),
         ("sink", sink_mutants.Below),
+        ("source", source_mutants.Tap),
         ("diagnostic", diagnostic_mutants.Fastest),
         ("particle_field", particle_field_mutants.Momentum),
     ],

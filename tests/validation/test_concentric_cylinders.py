@@ -11,27 +11,14 @@ from clock import at
 from turned import filled, lattice
 from wall_scenes import grid
 
+from mpmkit.rheology.rotation import coaxial_torque
+
 pytestmark = pytest.mark.section(6)
 INNER, OUTER, TALL, VISCOSITY = 0.0635, 0.143, 0.127, 20.0
 
 
 def torque_of_reiner(rate: float, yield_stress: float) -> float:
-    """N m for a height of ``TALL`` m: Reiner & Riwlin, sheared up to M / (2π r² h) = τ0 at most."""
-
-    def sheared_to(radius):
-        drive = VISCOSITY * rate + yield_stress * math.log(radius / INNER)
-        return 4 * math.pi * TALL * drive / (INNER**-2 - radius**-2)
-
-    def held_at(radius):
-        return 2 * math.pi * radius**2 * TALL * yield_stress
-
-    if sheared_to(OUTER) >= held_at(OUTER):
-        return sheared_to(OUTER)
-    low, high = INNER * 1.0001, OUTER
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if sheared_to(middle) > held_at(middle) else (low, middle)
-    return held_at(low)
+    return coaxial_torque(INNER, OUTER, TALL, rate, yield_stress, VISCOSITY)
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,10 @@ from mpmkit.case.shipped import shipped_case
 from mpmkit.rheology.laboratory import FORMULAS, THIN, G
 
 pytestmark = pytest.mark.section(8)
-QUICK = {"sagging_film": ("until=0.02",)}
-"""What makes a case short enough for the default run: the film is in its steady flow after 5 ms."""
-FORCES = ("torque_of_vane", "plate_force")
+QUICK = {"sagging_film": ("until=0.02",), "coaxial_cylinders": ("until=0.3",)}
+"""What makes a case short enough for the default run: the film is in its steady flow after 5 ms, and the
+cylinders after 0.2 s."""
+FORCES = ("torque_of_vane", "torque_of_cylinder", "plate_force")
 """Taken as the mean of the last twentieth of the run: they swing with the sound."""
 
 
@@ -98,3 +99,26 @@ def test_a_layer_stands_by_itself(validate, part, stands):
     found = measured("standing_layer", "settlement", f"parameters.yield_stress={part * enough}")
     name = f"Layer with {part:g} of ρgh/√3: settlement over its height"
     validate(name, found, below(0.01, "0") if stands else above(0.05))
+
+
+@pytest.mark.slow
+def test_the_flow_time_of_a_v_funnel_grows_in_line_with_the_viscosity(validate):
+    """Of three viscosities, the middle one lies on the line of the others."""
+    short, middle, long = (
+        measured("v_funnel", "flow_time", f"parameters.plastic_viscosity={mu}") for mu in (10, 20, 50)
+    )
+    line = short + (long - short) * (20 - 10) / (50 - 10)
+    validate(
+        "V-funnel at 20 Pa s: flow time over the line of 10 and 50 Pa s", middle / line, close_to(1, rel=0.05)
+    )
+
+
+@pytest.mark.slow
+def test_the_flow_time_of_a_v_funnel_is_that_of_its_finest_run(validate):
+    """The finest run has 3 cells in half of the depth, the shipped case 2."""
+    fine = measured("v_funnel", "flow_time", "parameters.cells_across=3")
+    validate(
+        "V-funnel: flow time over that of the finest run",
+        measured("v_funnel", "flow_time") / fine,
+        close_to(1, rel=0.25),
+    )

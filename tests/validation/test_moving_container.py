@@ -73,7 +73,12 @@ def hold_carried(validate, velocity, contact, as_one):
 
 @pytest.mark.parametrize(
     ("velocity", "contact"),
-    [((0.4, 0.0), "slip"), ((0.0, 0.4), "stick"), ((0.3, -0.25), "slip"), ((0.3, -0.25), "stick")],
+    [
+        pytest.param((0.4, 0.0), "slip", marks=pytest.mark.slow),
+        pytest.param((0.0, 0.4), "stick", marks=pytest.mark.slow),
+        ((0.3, -0.25), "slip"),
+        ((0.3, -0.25), "stick"),
+    ],
     ids=str,
 )
 def test_container_and_content_move_together(validate, velocity, contact):

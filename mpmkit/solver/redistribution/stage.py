@@ -63,7 +63,9 @@ class Stage:
         particles: Particles,
         radial: bool,
         gravity: np.ndarray,
+        spacing: float,
     ) -> None:
+        """``spacing``: m, of particles that come in; used if there are none yet."""
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
         self.shear = self.elapsed = self.energy = 0.0
@@ -73,7 +75,7 @@ class Stage:
         self._follows = scheme.shape.particle_domain != "fixed"
         self._grid, self._walls = grid, walls
         self._particles, self._radial = particles, radial
-        self._times = max(1, round(grid.cell_size / self._typical_spacing()))
+        self._times = max(1, round(grid.cell_size / (self._typical_spacing() if len(particles) else spacing)))
 
     def state(self) -> State:
         return {name: np.array(getattr(self, name)) for name in ("shear", "elapsed", "energy", "momentum")}
@@ -236,4 +238,4 @@ class Stage:
         audit.require_finite(author, what, given, p.number, [p.position, p.volume, p.velocity_gradient])
 
     def _fluids(self) -> list[slice]:
-        return [group.part for group in self._particles.groups if group.law.uses_equation_of_state]
+        return [group.part for group in self._particles.present_groups if group.law.uses_equation_of_state]

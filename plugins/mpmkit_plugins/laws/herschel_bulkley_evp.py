@@ -10,6 +10,7 @@ from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 from mpmkit.kernels.elementary import SMALLEST, exp, fused, log
 
 ROUNDING = 1e-15
+HALF_LN2 = 0.5 * math.log(2)
 MOST_ITERATIONS = 60
 
 
@@ -43,9 +44,10 @@ class HerschelBulkleyEVP(ElastoviscoplasticLaw):
 
 
 def _iterations(flow_index: float) -> int:
-    """Steps of Newton's method that bring its error e from ln 2 below rounding, by the bound on its square,
-    e ← (n - 1)² / (8 min(n, 1)) e²."""
-    error, curvature = math.log(2), (flow_index - 1) ** 2 / (8 * min(flow_index, 1))
+    """Steps of Newton's method that bring its error e from the start's, ln 2 / (2 min(n, 1)) at the most,
+    below rounding, by the bound on its square, e ← (n - 1)² / (8 min(n, 1)) e²."""
+    least = min(flow_index, 1)
+    error, curvature = HALF_LN2 / least, (flow_index - 1) ** 2 / (8 * least)
     for steps in range(1, MOST_ITERATIONS):
         error = min(curvature * error, 0.5) * error
         if error < ROUNDING:
@@ -57,11 +59,12 @@ def _iterations(flow_index: float) -> int:
 def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index, iterations, stress):
     """Newton's method on ln(k e^(n y) + G Δt e^y) = ln(tau* - tau0) with y = ln γ̇.
 
-    In logarithms the curve is all but straight, its slope between 1 and n, and convex. It starts where the
-    larger term alone would be the sum, ln 2 too high at the most. All particles take the same number of
-    steps, each a loop without a branch, so that several are solved at once; ``stress`` holds y until then.
+    In logarithms the curve is all but straight, its slope between 1 and n, and convex. Where the larger term
+    alone would be the sum, it is between 0 and ln 2 too high; the start is half of that lower. All particles
+    take the same number of steps, each a loop without a branch, so that several are solved at once;
+    ``stress`` holds y until then.
     """
-    ln_k, ln_g = math.log(consistency), math.log(stiffness)
+    ln_k, ln_g, per_index = math.log(consistency), math.log(stiffness), 1 / flow_index
     n = len(trial)
     for c in prange(chunk_count(n)):
         given = trial[c * CHUNK : min(n, (c + 1) * CHUNK)]
@@ -69,14 +72,14 @@ def _relaxed_stress(trial, stiffness, yield_stress, consistency, flow_index, ite
         target = np.empty(len(given))
         for p in range(len(given)):
             target[p] = log(max(given[p] - yield_stress, SMALLEST))
-            found[p] = min((target[p] - ln_k) / flow_index, target[p] - ln_g)
+            found[p] = min((target[p] - HALF_LN2 - ln_k) * per_index, target[p] - HALF_LN2 - ln_g)
         for _ in range(iterations):
             for p in range(len(given)):
                 a, b = fused(flow_index, found[p], ln_k), found[p] + ln_g
                 less = exp(-abs(a - b))  # the smaller term over the larger one
                 value = max(a, b) + log(1.0 + less)
-                slope = (flow_index + less if a > b else fused(flow_index, less, 1.0)) / (1.0 + less)
-                found[p] -= (value - target[p]) / slope
+                slope = flow_index + less if a > b else fused(flow_index, less, 1.0)  # times 1 + less
+                found[p] -= (value - target[p]) * (1.0 + less) / slope
         for p in range(len(given)):
             excess = given[p] - yield_stress
             # Never more than without flow; and what is no number stays none.
