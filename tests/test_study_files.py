@@ -280,7 +280,9 @@ def test_compare(here, capsys, monkeypatch):
     arguments = ("compare", "a case.json", *axes, *changes, "--set", "grid.faces.x_max=open")
     assert status(*arguments) == 0
     shown = capsys.readouterr()
-    assert shown.out.splitlines()[-1] == "results in runs/compare-a-case"
+    assert shown.out.splitlines()[-1] == (
+        "results in runs/compare-a-case; open runs/compare-a-case/index.html in a browser"
+    )
     assert shown.out.count("| finished |") == 2
     assert shown.out.count("| particle-outside at 0.00") == 2
     assert sum(line.startswith("usl, [0, 0]: finished, ") for line in shown.err.splitlines()) == 1

@@ -157,7 +157,7 @@ def test_study_on_the_command_line(tmp_path, scratch, monkeypatch, capfd):
     (tmp_path / "s.json").write_text(json.dumps(content), encoding="utf-8")
     assert status("study", "s.json", "--workers", "2") == 1
     shown, said = capfd.readouterr()
-    assert shown.splitlines()[-1] == "results in runs/s"
+    assert shown.splitlines()[-1] == "results in runs/s; open runs/s/index.html in a browser"
     assert "bad: failed, 0.0 s: bodies.0.shape holds no particle" in said
     assert "good: finished, " in said
     assert said.splitlines()[-1] == (

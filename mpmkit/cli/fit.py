@@ -45,6 +45,7 @@ def command(
     from ..errors import Interrupted
     from ..fitting import fit as find
     from ..fitting import load_fit
+    from ..fitting.directory import PAGE
     from ..running.interrupts import take_signals_as_interrupts
 
     wanted = load_fit(fit)
@@ -83,7 +84,7 @@ def command(
         )
     for sentence in result.sentences:
         echo(sentence)
-    echo(f"{result.runs} runs; results in {directory}")
+    echo(f"{result.runs} runs; results in {directory}; open {directory / PAGE} in a browser")
 
 
 class _Counter:

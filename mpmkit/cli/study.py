@@ -96,7 +96,7 @@ def run_study(
                 store.write(collect(study, members, store))
     if not quiet:
         echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
-        echo(f"results in {store.path}")
+        echo(f"results in {store.path}; open {store.path / NAME} in a browser")
     failed = [member.title for member in members if not store.settled(member)]
     if failed:
         raise Unfinished(

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 import xarray
 
+from ..study.histories import ROWS, number_or_nan, scalars_at
 from ..study.quantities import COSTS, FIGURES
 from ..version import __version__
 from .model import Fit
 from .solve import Solution
-
-ROWS = 201
-"""Times at which histories are compared."""
 
 
 def dataset(fit: Fit, solutions: Mapping[str, Solution]) -> xarray.Dataset:
@@ -41,7 +39,7 @@ def dataset(fit: Fit, solutions: Mapping[str, Solution]) -> xarray.Dataset:
     records = [solution.runs.record(point.members[number]) for _, solution, point, number in rows]
     for kind, known in (("summary", FIGURES), ("cost", COSTS)):
         for name, (units, text) in known.items():
-            values = [_number(record.get(kind, {}).get(name)) for record in records]
+            values = [number_or_nan(record.get(kind, {}).get(name)) for record in records]
             fields[name] = ("run", values, {"units": units, "long_name": text})
     fields["chi2"] = (
         "run",
@@ -53,15 +51,10 @@ def dataset(fit: Fit, solutions: Mapping[str, Solution]) -> xarray.Dataset:
         history = solution.runs.history(point.members[number])
         if history is None:
             continue
-        end = float(history.time[-1]) * (1 + 1e-9)
-        for key, series in history.data_vars.items():
-            name = str(key)
-            if series.dims != ("time",):
-                continue
+        for name, series, attributes in scalars_at(history, time):
             if name not in fields:
-                fields[name] = (("run", "time"), np.full((len(rows), ROWS), np.nan), dict(series.attrs))
-            values = np.interp(time, history.time.values, series.values)
-            fields[name][1][index] = np.where(time <= end, values, np.nan)
+                fields[name] = (("run", "time"), np.full((len(rows), ROWS), np.nan), attributes)
+            fields[name][1][index] = series
     coordinates: dict[str, Any] = {
         "law": ("run", np.array([law for law, *_ in rows], dtype=object)),
         "test": ("run", np.array([s.runs.tests[n].name for _, s, _, n in rows], dtype=object)),
@@ -82,7 +75,3 @@ def _chi2(solution: Solution, point: Any) -> float:
     if point.predicted is None:
         return math.nan
     return float(np.sum(solution.survey.likelihood.misfit.residuals(point.predicted.value) ** 2))
-
-
-def _number(value: Any) -> float:
-    return math.nan if value is None else float(value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import Any
 
 import numpy as np
@@ -13,14 +12,12 @@ from ..case.ending import conditions
 from ..case.model import Case
 from ..output.netcdf import read_dataset
 from ..version import __version__
+from .histories import ROWS, number_or_nan, scalars_at
 from .labels import unit_of
 from .members import Member, dimensions, shown
 from .model import Study
 from .quantities import COSTS, FIGURES
 from .store import Store
-
-ROWS = 201
-"""Times at which histories are compared."""
 
 
 def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset:
@@ -50,9 +47,9 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
         fields["fate"][1][place] = record["fate"]
         fields["sentence"][1][place] = record["sentence"]
         for name in FIGURES:
-            fields[name][1][place] = _number(record["summary"].get(name))
+            fields[name][1][place] = number_or_nan(record["summary"].get(name))
         for name in COSTS:
-            fields[name][1][place] = _number(record["cost"].get(name))
+            fields[name][1][place] = number_or_nan(record["cost"].get(name))
         history = store.history(member)
         if history is not None:
             _add_history(fields, history, (*names, "time"), place, time)
@@ -77,23 +74,14 @@ def _end(member: Member, store: Store) -> float:
 
 
 def _add_history(fields: dict, path, names: tuple, place: tuple, time: np.ndarray) -> None:
-    history = read_dataset(path)
-    end = float(history.time[-1])
-    for name, series in history.data_vars.items():
-        if series.dims != ("time",):
-            continue
+    for name, values, attributes in scalars_at(read_dataset(path), time):
         if name not in fields:
             shape = next(iter(fields.values()))[1].shape
-            fields[str(name)] = (names, np.full((*shape, len(time)), np.nan), dict(series.attrs))
-        values = np.interp(time, history.time.values, series.values)
-        fields[str(name)][1][place] = np.where(time <= end * (1 + 1e-9), values, np.nan)
+            fields[name] = (names, np.full((*shape, len(time)), np.nan), attributes)
+        fields[name][1][place] = values
 
 
 def _described(dimension: str, case: Case) -> dict[str, str]:
     """Attributes of a dimension: the unit of the quantity that it varies, if it varies one."""
     unit = unit_of(case, dimension)
     return {} if unit is None else {"units": unit}
-
-
-def _number(value: Any) -> float:
-    return math.nan if value is None else float(value)

@@ -19,6 +19,7 @@ from ..report.page.section import Section, charts, folded, note, paragraph
 from .chart import chart
 from .chart_figure import LEAST_ERROR
 from .figures import SHOWN, members
+from .labels import short_names
 from .quantities import COSTS
 from .table import COLUMNS, fate_of, shown_in_table
 
@@ -136,7 +137,7 @@ def _table(dataset: xarray.Dataset, directory: Path) -> Section:
     """A row for each member, with a link to its page."""
     places = _directories(directory)
     dimensions = [str(name) for name in dataset.fate.dims]
-    headings = [*dimensions, *(heading for _, heading, _, _ in COLUMNS), "how it ended"]
+    headings = [*_named(dataset, dimensions), *(heading for _, heading, _, _ in COLUMNS), "how it ended"]
     rows = ""
     for title, member in members(dataset):
         labels = [str(member[name].item()) for name in dimensions]
@@ -155,6 +156,13 @@ def _table(dataset: xarray.Dataset, directory: Path) -> Section:
         f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
     )
     return Section("members", "Members", body)
+
+
+def _named(dataset: xarray.Dataset, dimensions: list[str]) -> list[str]:
+    """Short names of the dimensions, with units."""
+    short = short_names(dimensions)
+    units = {name: str(dataset[name].attrs.get("units", "1")) for name in dimensions}
+    return [short[name] + ("" if units[name] == "1" else f" ({units[name]})") for name in dimensions]
 
 
 def _directories(directory: Path) -> dict[tuple[str, ...], str]:
