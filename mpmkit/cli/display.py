@@ -144,7 +144,7 @@ class Display(logging.Handler):
     def _say_compiling(self) -> bool:
         """Say that kernels are compiled, once the run has begun to speak; whether it was said."""
         if self._started:
-            say("compiling kernels for the first run of this kind, which takes about half a minute")
+            say("compiling kernels for the first run of this kind, which takes about 20 seconds")
         return self._started
 
     def __call__(self, progress: runner.Progress) -> None:

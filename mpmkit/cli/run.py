@@ -122,7 +122,13 @@ def perform(
     import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
 
     from ..errors import Undrawn
+    from ..output.netcdf import leave_dask_out
+    from ..running.ahead import compile_ahead
     from ..running.runner import resume, run
+
+    if case is not None:
+        compile_ahead(case, settings.get("threads"))
+    leave_dask_out()
 
     def go(listen: Any) -> None:
         if resumed:

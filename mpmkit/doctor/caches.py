@@ -17,7 +17,7 @@ def caches() -> Finding:
             {"compiled kernels": "nowhere"},
             [
                 "compiled kernels cannot be kept, since no cache folder can be written: every run compiles "
-                "them again, which takes about half a minute; set NUMBA_CACHE_DIR to a folder that can be "
+                "them again, which takes about 20 seconds; set NUMBA_CACHE_DIR to a folder that can be "
                 "written"
             ],
         )

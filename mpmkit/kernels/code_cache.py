@@ -28,6 +28,7 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from . import code_folders
+from .ahead import AHEAD
 from .fingerprint import Unknown, fingerprint, signature_key
 
 KERNELS = Path(__file__).parent
@@ -83,11 +84,11 @@ class KeptCode(NullCache):
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         """Code for a signature, None if there is none."""
         target_context.refresh()
-        try:
+        with suppress(Exception):  # a value without a key, or a file is damaged: compiling anew is right
             path = self._path(sig, target_context.codegen())
-            return CompileResult._rebuild(target_context, *pickle.loads(code_folders.read(path)))
-        except Exception:  # there is none, or a file is damaged: compiling anew is always right
-            return None
+            if path.exists() or AHEAD.compiles(path):
+                return CompileResult._rebuild(target_context, *pickle.loads(code_folders.read(path)))
+        return None
 
     def save_overload(self, sig: Any, data: CompileResult) -> None:
         """Keep code, if it can be: not what holds an address of this process."""
@@ -95,6 +96,14 @@ class KeptCode(NullCache):
             return
         with suppress(Exception):  # a full disk, or a value without a key
             code_folders.write(self._path(sig, data.codegen), dumps(data._reduce()))
+
+    def path(self, sig: Any, target_context: Any) -> Path:
+        """Where code for a signature is kept.
+
+        Raises:
+            Unknown: it cannot be kept.
+        """
+        return self._path(sig, target_context.codegen())
 
     def _path(self, sig: Any, codegen: Any) -> Path:
         root = code_folders.cache_root()

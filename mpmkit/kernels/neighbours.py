@@ -2,42 +2,42 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import prange
 
 from .compile import kernel
 
 
-@kernel()
 def least_around(values, least):
     """Least of each and all its neighbours, corners included; what is beyond the block counts 0."""
-    ni, nj, nk = values.shape
-    beside = 1 if nj > 1 else 0
-    for i in prange(ni):
-        for j in range(nj):
-            for k in range(nk):
-                edge = i == 0 or i == ni - 1 or k == 0 or k == nk - 1
-                if nj > 1:
-                    edge |= j == 0 or j == nj - 1
-                low = min(values[i, j, k], 0.0) if edge else values[i, j, k]
-                for a in range(max(0, i - 1), min(ni, i + 2)):
-                    for b in range(max(0, j - beside), min(nj, j + beside + 1)):
-                        for c in range(max(0, k - 1), min(nk, k + 2)):
-                            low = min(low, values[a, b, c])
-                least[i, j, k] = low
+    least[...] = values
+    for axis in _axes(values):  # the least of rows, then of planes, then of blocks
+        _along(_split(least.copy(), axis), 0.0, _split(least, axis))
+
+
+def least_beside(values, least):
+    """Least of each and those that share a face with it; what is beyond the block does not count."""
+    least[...] = values
+    for axis in _axes(values):
+        _along(_split(values, axis), np.inf, _split(least, axis))
+
+
+def _axes(values):
+    return (0, 1, 2) if values.shape[1] > 1 else (0, 2)
+
+
+def _split(values, axis):
+    """(before, n, behind): all that lies before an axis as one axis, and all that lies behind it."""
+    return values.reshape(int(np.prod(values.shape[:axis])), values.shape[axis], -1)
 
 
 @kernel()
-def least_beside(values, least):
-    """Least of each and those that share a face with it; what is beyond the block does not count."""
-    ni, nj, nk = values.shape
-    for i in prange(ni):
-        for j in range(nj):
-            for k in range(nk):
-                low = values[i, j, k]
-                for a in (max(0, i - 1), min(ni - 1, i + 1)):
-                    low = min(low, values[a, j, k])
-                for b in (max(0, j - 1), min(nj - 1, j + 1)):
-                    low = min(low, values[i, b, k])
-                for c in (max(0, k - 1), min(nk - 1, k + 1)):
-                    low = min(low, values[i, j, c])
-                least[i, j, k] = low
+def _along(values, beyond, least):
+    """The least of what is there and of the two beside it along the axis in the middle."""
+    before, n, behind = values.shape
+    for row in prange(before * n):
+        i, j = row // n, row % n
+        for k in range(behind):
+            lower = values[i, j - 1, k] if j > 0 else beyond
+            upper = values[i, j + 1, k] if j < n - 1 else beyond
+            least[i, j, k] = min(least[i, j, k], lower, upper)

@@ -67,11 +67,13 @@ def find_keys(cell, low, blocks, block_index, key):
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
             place = within = 0
+            cells = 1
             for d in range(dim):
                 k = cell[p, d] - low[d]
                 place = place * blocks[d] + k // BLOCK_WIDTH
                 within = within * BLOCK_WIDTH + k % BLOCK_WIDTH
-            key[p] = block_index[place] * BLOCK_WIDTH**dim + within
+                cells *= BLOCK_WIDTH
+            key[p] = block_index[place] * cells + within
 
 
 @function()

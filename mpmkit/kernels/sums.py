@@ -7,6 +7,8 @@ from numba import prange
 
 from .compile import CHUNK, chunk_count, function, kernel
 
+_ONE = np.ones(1)
+
 
 @function()
 def _in_order(parts):
@@ -15,20 +17,6 @@ def _in_order(parts):
     for part in parts:
         total += part
     return total
-
-
-@kernel()
-def product(a, b):
-    """Σ a b, of two ``(n,)``."""
-    n = len(a)
-    chunks = chunk_count(n)
-    parts = np.zeros(chunks)
-    for c in prange(chunks):
-        part = 0.0
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            part += a[p] * b[p]
-        parts[c] = part
-    return _in_order(parts)
 
 
 @kernel()
@@ -46,6 +34,11 @@ def moment(mass, vectors, along):
             part += mass[p] * component
         parts[c] = part
     return _in_order(parts)
+
+
+def product(a, b):
+    """Σ a b, of two ``(n,)``."""
+    return moment(a, b[:, None], _ONE)
 
 
 @kernel()

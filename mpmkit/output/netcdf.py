@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +25,23 @@ def load_library() -> None:
     """Load the library, which takes about a second at the first time."""
     import netCDF4  # noqa: F401
     import xarray  # noqa: F401
+
+
+def leave_dask_out() -> None:
+    """Have xarray find that Dask is not there. It loads Dask wherever it is installed, although a run has
+    none of its arrays. For a process that does nothing else than one run.
+
+    xarray asks once and remembers the answer. Afterwards Dask can be loaded as ever.
+    """
+    if "dask" in sys.modules or "xarray" in sys.modules:
+        return
+    sys.modules["dask"] = None  # type: ignore[assignment]  # so Python finds no such module
+    try:
+        import xarray
+
+        xarray.Dataset(coords={"x": [0.0]})
+    finally:
+        del sys.modules["dask"]
 
 
 def read_scalars(path: Path) -> dict[str, tuple[np.ndarray, str, str]]:
@@ -51,14 +69,25 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     """
     with replacing(path) as partial:
         try:
-            # The absolute path, since xarray takes "~" at the begin of a path for the home folder.
             with _ONE_AT_A_TIME:
-                dataset.to_netcdf(partial.absolute(), engine="netcdf4")
+                _dump(dataset, partial)
         except (RuntimeError, OSError) as error:
             if isinstance(error, OSError) and (error.errno or 0) > 0:
                 raise  # the system gives the reason
             _meet_the_reason(partial, dataset.nbytes + MORE)
             raise cannot_write(path, error) from error
+
+
+def _dump(dataset: xarray.Dataset, path: Path) -> None:
+    """As ``to_netcdf``, which loads Dask where it is installed, to ask it for a lock."""
+    from xarray.backends import NetCDF4DataStore
+
+    # The absolute path, since xarray takes "~" at the begin of a path for the home folder.
+    store = NetCDF4DataStore.open(path.absolute(), mode="w", lock=False)
+    try:
+        dataset.dump_to_store(store)
+    finally:
+        store.close()
 
 
 def read_dataset(path: Path) -> xarray.Dataset:

@@ -236,6 +236,8 @@ def _permute(array: np.ndarray, order: np.ndarray, scratch: np.ndarray) -> None:
         array[...] = array[order]
         return
     rows = array.reshape(len(array), -1)
-    sorted_rows = scratch.view(array.dtype)[: array.size].reshape(rows.shape)
+    if array.itemsize == scratch.itemsize:  # one function moves numbers of both kinds
+        rows = rows.view(scratch.dtype)
+    sorted_rows = scratch.view(rows.dtype)[: array.size].reshape(rows.shape)
     permute(rows, order, sorted_rows)
     rows[...] = sorted_rows

@@ -26,6 +26,9 @@ TURN = threading.Lock()
 """Lock for executors with threads: one member at a time in a process, because CPU time, numba's threads and
 the NetCDF library are shared by the whole process."""
 
+_LOADED: set[frozenset[str]] = set()
+"""Kinds of cases whose code this process has loaded: their warm-up run has been made."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -68,6 +71,7 @@ def _run(data: dict[str, Any], threads: int, page: PageOf | None) -> Outcome:
 
     from ..case import parse_case
     from ..case.ending import latest
+    from ..running.ahead import traits
     from ..running.runner import run
     from ..solver.memory import expected_bytes, require_memory
 
@@ -79,9 +83,12 @@ def _run(data: dict[str, Any], threads: int, page: PageOf | None) -> Outcome:
         return Outcome(FAILED, reason(error), {}, {}, b"")
     fate, sentence = "finished", ""
     with tempfile.TemporaryDirectory() as place:
-        with suppress(Exception):  # the run meets the error again and reports it
-            moment = case.model_copy(update={"until": MOMENT * case.end})
-            run(moment, Path(place) / "moment", threads=threads, draw=False)
+        kind = frozenset(traits(case))
+        if kind not in _LOADED:
+            with suppress(Exception):  # the run meets the error again and reports it
+                moment = case.model_copy(update={"until": MOMENT * case.end})
+                run(moment, Path(place) / "moment", threads=threads, draw=False)
+                _LOADED.add(kind)
         out = Path(place) / "run"
         wall, cpu = clock.perf_counter(), clock.process_time()
         try:

@@ -12,7 +12,7 @@ from ..errors import reason
 from .so_far import NOTHING, SoFar
 
 END = "</body>"
-PREPARING = "The run is being prepared. The first run of a kind compiles its kernels: about half a minute."
+PREPARING = "The run is being prepared. The first run of a kind compiles its kernels: about 20 seconds."
 PAUSE = 150
 """Least pause between two pages, as a multiple of the processor time of one page. So pages and requests
 together use at most a hundredth of a core."""
