@@ -7,6 +7,7 @@ A first run has these compiled side by side. Run it after kernels have changed:
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
@@ -75,13 +76,16 @@ def needed_by(name: str, until: float) -> dict:
 
 
 def main() -> None:
-    if len(sys.argv) > 1:
-        print(json.dumps(needed_by(sys.argv[1], float(sys.argv[2]))))
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--case", choices=CASES, help="print what this case needs, and write nothing")
+    one = parser.parse_args().case
+    if one:
+        print(json.dumps(needed_by(one, CASES[one])))
         return
     functions: list[dict] = []
     cases = []
-    for name, until in CASES.items():
-        command = [sys.executable, __file__, name, str(until)]
+    for name in CASES:
+        command = [sys.executable, __file__, "--case", name]
         for _ in range(2):  # the first run compiles what is missing
             said = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
         found = json.loads(said.stdout.splitlines()[-1])
