@@ -171,7 +171,7 @@ def _touching(case: Case) -> Iterator[str]:
     fluid = [material.constitutive_law.uses_equation_of_state for material in materials]
     for i, j in combinations(range(len(case.bodies)), 2):
         a, b = case.bodies[i], case.bodies[j]
-        at_one = a.velocity == b.velocity
+        at_one = a.velocity == b.velocity and a.initial == b.initial
         if (
             of[i] == of[j]
             and at_one
@@ -197,7 +197,7 @@ def _touching(case: Case) -> Iterator[str]:
 def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
-        return bool(case.gravity_at_start.any()) or a.velocity is not None or b.velocity is not None
+        return bool(case.gravity_at_start.any()) or any(map(case.speed_at_start, (a, b)))
     relative = (_velocity(case, b) - _velocity(case, a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True

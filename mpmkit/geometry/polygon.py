@@ -7,7 +7,7 @@ from itertools import combinations, pairwise
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from ..contracts.base import quantity
 from ..spaces import Space
@@ -27,9 +27,10 @@ class Polygon(Shape):
     """
 
     kind: Literal["polygon"]
-    corners: list[list[float]] = Field(
-        description="m; its corners in order, each a pair of coordinates along the first and the last axis, "
-        "such as [[0, 0], [1, 0], [0, 1]]",
+    corners: list[list[float]] = quantity(
+        "m",
+        "its corners in order, each a pair of coordinates along the first and the last axis, such as "
+        "[[0, 0], [1, 0], [0, 1]]",
         min_length=3,
     )
     y: list[float] | None = quantity(
