@@ -108,11 +108,11 @@ class TestHistory:
         history.write(path)
         history.record(1.0, row())
 
-        def fill_the_disk(dataset, target, **options):
-            target.write_bytes(b"CDF half a file")
+        def fill_the_disk(dataset, store):
+            store.ds.title = "half a file"
             raise OSError(28, "No space left on device")
 
-        monkeypatch.setattr(xr.Dataset, "to_netcdf", fill_the_disk)
+        monkeypatch.setattr(xr.Dataset, "dump_to_store", fill_the_disk)
         with pytest.raises(OutputError, match=r"history\.nc.*No space left on device"):
             history.write(path)
         with xr.open_dataset(path) as read:
@@ -120,10 +120,10 @@ class TestHistory:
         assert [entry.name for entry in tmp_path.iterdir()] == ["history.nc"]
 
     def test_an_error_of_the_netcdf_library_is_an_output_error(self, tmp_path, monkeypatch):
-        def fail(dataset, target, **options):
+        def fail(dataset, store):
             raise RuntimeError("NetCDF: HDF error")
 
-        monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+        monkeypatch.setattr(xr.Dataset, "dump_to_store", fail)
         with pytest.raises(OutputError, match="HDF error") as caught:
             small_history().write(tmp_path / "history.nc")
         assert caught.value.exit_status == 4

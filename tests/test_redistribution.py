@@ -201,7 +201,7 @@ def test_weighted_volumes_fill_each_cell_where_most_boxes_lie_across_two():
     simulation.operations.begin()
     p.velocity_gradient[:, 0, 1] = 1e-9  # shear that moves nothing
     stage = simulation.operations.stage
-    stage.shear = stage.time = 1.0
+    stage.shear = stage.elapsed = 1.0
     stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
     found = {}
 

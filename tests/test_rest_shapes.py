@@ -100,7 +100,7 @@ def test_slump_of_slices_is_that_of_schowalter_and_christensen(density, yield_st
 
 
 def test_a_slope_does_not_hold_more_than_the_critical_depth():
-    with pytest.raises(ValueError, match="more than what comes to rest"):
+    with pytest.raises(ValueError, match="larger than the largest that can rest"):
         slope_length(10.0, 50 / (2300 * G), math.radians(10))
 
 

@@ -106,15 +106,26 @@ def test_an_interrupted_run_ends_where_it_would_have(runs, tmp_path, monkeypatch
     assert summary(tmp_path / "run")["steps"] == summary(runs / "rest")["steps"]
 
 
+class Three:
+    """Three particles at one place."""
+
+    def __init__(self):
+        self.mass, self.velocity, self.position = np.ones(3), np.zeros((3, 2)), np.zeros((3, 2))
+
+    def __len__(self):
+        return 3
+
+
 def scripted(spread, speed, height=0.3, walls=()):
     """A stand-in for a simulation, whose spread and RMS speed follow functions of time; 1 m/s at first."""
     case = parse_case(CAKE | {"until": {"rest": True, "at_most": 100}})
     scene = SimpleNamespace(time=0.0, steps=0, case=case.model_copy(), settled=True)
     scene.case.__dict__["height"] = height
-    scene.particles = SimpleNamespace(mass=np.ones(3), velocity=np.zeros((3, 2)), position=np.zeros((3, 2)))
+    scene.particles = Three()
     scene.measures = SimpleNamespace(spread=lambda p: spread(scene.time), height=lambda p: 0.02)
     scene.grid = SimpleNamespace(periodic=np.zeros(2, dtype=bool))
-    scene.operations = SimpleNamespace(walls=SimpleNamespace(walls=list(walls)))
+    sources = SimpleNamespace(goes_on=lambda time: False)
+    scene.operations = SimpleNamespace(walls=SimpleNamespace(walls=list(walls)), sources=sources)
     scene.drains = SimpleNamespace(emptied="")
     milestones = Milestones(scene)
     ending = Ending(scene, milestones)

@@ -91,8 +91,8 @@ def _slope_for(affine):
     return slope
 
 
-def _gather_2d(support, affine):
-    slope, keeps_affine = _slope_for(affine), affine
+def _gather_2d(support, keeps_affine):
+    slope = _slope_for(keeps_affine)
 
     @kernel()
     def gather_2d(
@@ -139,8 +139,8 @@ def _gather_2d(support, affine):
     return gather_2d
 
 
-def _gather_3d(support, affine):
-    slope, keeps_affine = _slope_for(affine), affine
+def _gather_3d(support, keeps_affine):
+    slope = _slope_for(keeps_affine)
 
     @kernel()
     def gather_3d(

@@ -71,7 +71,7 @@ def need_of(function: Dispatcher, signature: Sequence[numba_types.Type]) -> Need
     if made:
         closed = inspect.getclosurevars(python).nonlocals
         wanted = inspect.signature(getattr(importlib.import_module(python.__module__), maker)).parameters
-        values = {name: closed[name] for name in wanted if type(closed.get(name)) is int}
+        values = {name: closed[name] for name in wanted if type(closed.get(name)) in (int, bool)}
     return Need(python.__module__, python.__qualname__, values, tuple(map(_text, signature)))
 
 

@@ -116,7 +116,7 @@ def column(sheet: Sheet, cells: int) -> mpmkit.Simulation:
 @pytest.mark.parametrize(
     ("n", "cells", "last", "band"),
     [
-        (0.5, 4, 12, 0.1),
+        (0.5, 5, 12, 0.1),
         pytest.param(0.5, 6, 30, 0.1, marks=pytest.mark.slow),
         pytest.param(0.7, 12, 12, 0.05, marks=pytest.mark.slow),
     ],
