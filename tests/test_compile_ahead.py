@@ -38,7 +38,7 @@ def empty_cache(tmp_path, monkeypatch):
 
 def test_a_need_as_text_names_the_same_function_and_types():
     strided = types.Array(types.int32, 1, "A", readonly=True)
-    signature = (ROWS, strided, types.float64, types.boolean, types.int64)
+    signature = (ROWS, strided, types.float64, types.boolean, types.int64, types.UniTuple(types.int64, 3))
     for function in (permute, gather(2, 3), gather(3, 2)):
         need = Need(**need_of(function, signature).as_dict())
         assert need.function().py_func.__qualname__ == function.py_func.__qualname__

@@ -76,7 +76,10 @@ def need_of(function: Dispatcher, signature: Sequence[numba_types.Type]) -> Need
 
 
 def _text(kind: numba_types.Type) -> str:
-    """``float64``, or ``float64 2 C`` of an array with two axes that lies in memory as C has it."""
+    """``float64``, ``float64 2 C`` of an array with two axes that lies in memory as C has it, or ``tuple 3
+    int64`` of three integers."""
+    if isinstance(kind, numba_types.UniTuple):
+        return f"tuple {kind.count} {_text(kind.dtype)}"
     if (
         isinstance(kind, numba_types.Array)
         and kind.aligned
@@ -92,6 +95,8 @@ def _text(kind: numba_types.Type) -> str:
 
 def _type(text: str) -> numba_types.Type:
     name, *array = text.split()
+    if name == "tuple":
+        return numba_types.UniTuple(_type(" ".join(array[1:])), int(array[0]))
     scalar = numba.from_dtype(np.dtype(name))
     if not array:
         return scalar
