@@ -3,7 +3,7 @@ docs/images/lab/*.png, the gallery docs/lab/index.md, and the work of all shippe
 mpmkit/plan/shipped_work.csv.
 
     python docs/figures/lab_pages.py                      # from the record, and from new runs in runs/lab
-    python docs/figures/lab_pages.py --run [NAME…]        # run these first, default: all
+    python docs/figures/lab_pages.py --run [NAME…]        # run these cases first, default: the laboratory
     python docs/figures/lab_pages.py --run NAME… --fine   # and their fine variants
 
 What a run has found is recorded in docs/data/laboratory.json, so that a page can be written without its run.
@@ -67,17 +67,17 @@ def main() -> None:
                 run(f"{name}{FINE}", fine(read_json(shipped()[name])))
     PAGES.mkdir(exist_ok=True)
     IMAGES.mkdir(exist_ok=True)
-    for name in laboratory:
+    for name in shipped():
         for variant in ("", FINE):
             if (RUNS / f"{name}{variant}" / "summary.json").exists():
                 record(name, variant)
-        if (RUNS / name / "summary.json").exists():
+        if name in laboratory and (RUNS / name / "summary.json").exists():
             draw(name)
     done = [name for name in laboratory if name in recorded()]
     for name in done:
         (PAGES / f"{name}.md").write_text(page(name), encoding="utf-8")
     (PAGES / "index.md").write_text(gallery(done), encoding="utf-8")
-    write_work(done)
+    write_work()
 
 
 def run(name: str, data: dict) -> None:
@@ -251,15 +251,15 @@ def gallery(done: list[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_work(done: list[str]) -> None:
-    """Steps and particle-steps of all shipped cases: of their runs, else from their first step."""
+def write_work() -> None:
+    """Steps and particle-steps of all shipped cases: of recorded runs, else from their first step."""
     with WORK.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["name", "variant", "dimensions", "steps", "particle_steps"])
         for name, path in shipped().items():
             data, case = read_json(path), load_case(path)
             steps, particle_steps = expected = first_step(case)
-            if name in done:
+            if name in recorded():
                 steps, particle_steps = work(name)
             rows.writerow([name, "coarse", case.space_.dim, steps, round(particle_steps)])
             if has_fine(data):
@@ -278,7 +278,7 @@ def work(name: str) -> tuple[int, int]:
 def first_step(case) -> tuple[int, int]:
     """Steps and particle-steps of a run that goes on with its first step."""
     groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
-    fastest = max(body.largest_speed for body in case.bodies)
+    fastest = max(map(case.speed_at_start, case.bodies))
     waves = [(group, group.wave_speed) for group in groups]
     step, _ = choose_step(case.scheme, limits(waves, case.grid.cell_size, fastest, case.scale.rate))
     steps = round(case.end / step)
