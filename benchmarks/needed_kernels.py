@@ -78,9 +78,10 @@ def needed_by(name: str, until: float) -> dict:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--case", choices=CASES, help="print what this case needs, and write nothing")
-    one = parser.parse_args().case
-    if one:
-        print(json.dumps(needed_by(one, CASES[one])))
+    parser.add_argument("--until", type=float, help="how long it runs, s; default: that of the record")
+    chosen = parser.parse_args()
+    if chosen.case:
+        print(json.dumps(needed_by(chosen.case, chosen.until or CASES[chosen.case])))
         return
     functions: list[dict] = []
     cases = []

@@ -113,7 +113,7 @@ def test_a_case_takes_the_record_of_the_most_similar_one():
 def test_the_record_has_what_a_first_step_needs(name):
     """If this fails, kernels have changed: run ``python benchmarks/needed_kernels.py``."""
     script = ROOT / "benchmarks" / "needed_kernels.py"
-    command = [sys.executable, script, name, "1e-4"]
+    command = [sys.executable, script, "--case", name, "--until", "1e-4"]
     for _ in range(2):  # the first may have to compile
         said = subprocess.run(command, check=True, capture_output=True, text=True)
     record = recorded()
