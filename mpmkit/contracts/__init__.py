@@ -21,6 +21,7 @@ from .shape import ShapeFunction
 from .sink import Sink
 from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
+from .table import require_table
 from .velocity import VelocityUpdate
 from .version1 import Motion as Motion
 from .volumetric import VolumetricTreatment
@@ -69,5 +70,6 @@ __all__ = [
     "hookimpl",
     "maxwell",
     "quantity",
+    "require_table",
     "tensors",
 ]

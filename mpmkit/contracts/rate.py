@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from .base import quantity
+from .table import require_table
 
 
 class RateTable(BaseModel):
@@ -21,16 +21,7 @@ class RateTable(BaseModel):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> RateTable:
-        if len(self.times) != len(self.values):
-            raise ValueError(
-                f"values has {len(self.values)} entries and times {len(self.times)}; there must be one for "
-                "each time"
-            )
-        for before, after in pairwise(self.times):
-            if after <= before:
-                raise ValueError(
-                    f"times has {after:g} s after {before:g} s; each must be above the one before"
-                )
+        require_table("values", self.values, self.times)
         return self
 
 

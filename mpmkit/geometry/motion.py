@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from ..contracts.base import quantity
+from ..contracts.table import require_table
 from ..spaces import Space
 from . import turning
 
@@ -135,16 +136,7 @@ class Table(Motion):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> Table:
-        if len(self.times) != len(self.positions):
-            raise ValueError(
-                f"positions has {len(self.positions)} entries and times {len(self.times)}; "
-                "there must be one for each time"
-            )
-        for before, after in pairwise(self.times):
-            if after <= before:
-                raise ValueError(
-                    f"times has {after:g} s after {before:g} s; each must be above the one before"
-                )
+        require_table("positions", self.positions, self.times)
         for (t0, t1), (x0, x1) in zip(pairwise(self.times), pairwise(self.positions), strict=True):
             if max(abs(b - a) for a, b in zip(x0, x1, strict=True)) > TOO_FAST * (t1 - t0):
                 raise ValueError(f"positions go from {x0} to {x1} in {t1 - t0:g} s, which is too fast")

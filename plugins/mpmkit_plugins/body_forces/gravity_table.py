@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from mpmkit.contracts import BodyForce, Space, hookimpl, quantity
+from mpmkit.contracts import BodyForce, Space, hookimpl, quantity, require_table
 
 from .vectors import wrong_length
 
@@ -31,16 +30,7 @@ class GravityTable(BodyForce):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> GravityTable:
-        if len(self.times) != len(self.vectors):
-            raise ValueError(
-                f"vectors has {len(self.vectors)} entries and times {len(self.times)}; "
-                "there must be one for each time"
-            )
-        for before, after in pairwise(self.times):
-            if after <= before:
-                raise ValueError(
-                    f"times has {after:g} s after {before:g} s; each must be above the one before"
-                )
+        require_table("vectors", self.vectors, self.times)
         return self
 
     def problem(self, space: Space) -> str | None:

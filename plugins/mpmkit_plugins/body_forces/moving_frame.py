@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from mpmkit.contracts import BodyForce, Space, hookimpl, quantity
+from mpmkit.contracts import BodyForce, Space, hookimpl, quantity, require_table
 
 from .vectors import wrong_length
 
@@ -37,16 +36,7 @@ class MovingFrame(BodyForce):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> MovingFrame:
-        if len(self.times) != len(self.velocities):
-            raise ValueError(
-                f"velocities has {len(self.velocities)} entries and times {len(self.times)}; "
-                "there must be one for each time"
-            )
-        for before, after in pairwise(self.times):
-            if after <= before:
-                raise ValueError(
-                    f"times has {after:g} s after {before:g} s; each must be above the one before"
-                )
+        require_table("velocities", self.velocities, self.times)
         if self.period is None and self.count is not None:
             raise ValueError(
                 f"count is {self.count:g}, but there is no period; give both, or leave out count"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 from pydantic import model_validator
 
-from mpmkit.contracts import BodyForce, Space, hookimpl, quantity
+from mpmkit.contracts import BodyForce, Space, hookimpl, quantity, require_table
 from mpmkit.geometry import axis_problem, generator
 
 from .vectors import wrong_length
@@ -42,16 +42,7 @@ class RotatingFrame(BodyForce):
         if (self.times is None) != (self.rates is None) or (self.rate is None) == (self.rates is None):
             raise ValueError("it must have either rate, or times and rates")
         if self.times is not None and self.rates is not None:
-            if len(self.times) != len(self.rates):
-                raise ValueError(
-                    f"rates has {len(self.rates)} entries and times {len(self.times)}; "
-                    "there must be one for each time"
-                )
-            for before, after in pairwise(self.times):
-                if after <= before:
-                    raise ValueError(
-                        f"times has {after:g} s after {before:g} s; each must be above the one before"
-                    )
+            require_table("rates", self.rates, self.times)
         return self
 
     def problem(self, space: Space) -> str | None:

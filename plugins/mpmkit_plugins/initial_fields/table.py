@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from pydantic import model_validator
 
-from mpmkit.contracts import Beginning, InitialField, Space, hookimpl, quantity
+from mpmkit.contracts import Beginning, InitialField, Space, hookimpl, quantity, require_table
 
 from .sizes import wrong_size
 
@@ -27,16 +25,7 @@ class Table(InitialField):
 
     @model_validator(mode="after")
     def _is_a_table(self) -> Table:
-        if len(self.places) != len(self.values):
-            raise ValueError(
-                f"values has {len(self.values)} entries and places {len(self.places)}; "
-                "there must be one for each place"
-            )
-        for before, after in pairwise(self.places):
-            if after <= before:
-                raise ValueError(
-                    f"places has {after:g} m after {before:g} m; each must be above the one before"
-                )
+        require_table("values", self.values, self.places, "places")
         return self
 
     def problem(self, space: Space, field: str, shape: tuple[int, ...]) -> str | None:
