@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from mpmkit.errors import GuardStop, Interrupted
 from mpmkit.output import RunDirectory, read_frame, read_frames
 from mpmkit.output.flow import Moment, arrays_of, moments_of_arrays, read_flow
 from mpmkit.output.netcdf import read_dataset
+from mpmkit.output.summary import TRUSTED
 from mpmkit.report.page import MOST_BYTES, page_of
 from mpmkit.report.page.packing import LEVELS_8, LEVELS_16, Packed, Scale, packed, unpacked
 from mpmkit.report.page.thinning import fitting
@@ -145,6 +147,18 @@ def test_a_text_of_the_case_cannot_break_a_page(slump, tmp_path):
     page = page_of(tmp_path)
     assert "<img" not in page
     assert "&lt;/script&gt;&lt;img src=x&gt;&amp;" in page
+
+
+@pytest.mark.parametrize("why", TRUSTED)
+def test_only_a_guard_makes_a_page_warn_of_the_last_state(slump, tmp_path, why):
+    """A run that ended at rest, or by a condition, was said to be stopped by a guard."""
+    shutil.copytree(slump, tmp_path / "run")
+    path = tmp_path / "run" / "summary.json"
+    summary = json.loads(path.read_text())
+    path.write_text(json.dumps(summary | {"stopped_because": why}))
+    said = text_of(page_of(tmp_path / "run"))
+    assert "A guard" not in said
+    assert "do not trust" not in said
 
 
 def test_a_run_that_a_guard_stopped_has_a_page_that_says_so(tmp_path, monkeypatch):

@@ -9,13 +9,23 @@ import numpy as np
 from ...case.ending import latest
 from ...output import RunDirectory
 from ...output.checkpoints import Checkpoints
-from ...output.summary import LEAST_RATE, T500_DIAMETER, lifted_later
+from ...output.summary import (
+    AT_REST,
+    CONDITION,
+    FINISHED,
+    LEAST_RATE,
+    T500_DIAMETER,
+    lifted_later,
+    trusted_to_the_end,
+)
 from .section import Section, paragraph
 from .source import Source
 from .words import count, duration, length, number, seconds, unit_of
 
 ENDED = {
-    "finished": "The run came to its end",
+    FINISHED: "The run came to its end",
+    AT_REST: "The run ended, because the material is at rest,",
+    CONDITION: "The run ended, because a condition of until was met,",
     "interrupted": "The run was interrupted",
     "output-error": "The run stopped, because its files could not be written",
 }
@@ -41,7 +51,7 @@ def _ending(source: Source) -> str:
         until = latest(source.results.case["until"])
         return f"The run is in progress: t = {seconds(float(time[-1]))} of {number(until)} s."
     why, end = summary["stopped_because"], summary.get("simulated_time") or 0.0
-    if why not in ENDED:
+    if not trusted_to_the_end(why):
         errors = [said.text for said in source.last_start if said.level == "ERROR"]
         return (
             f"A guard stopped the run at t = {seconds(end)} ({why}): do not trust its last state; "
