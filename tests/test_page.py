@@ -70,7 +70,7 @@ def test_the_headline_comes_first_and_says_what_never_happened(slump):
         "Flow",
         "Histories",
         "Materials",
-        "Balance of mass, momentum and energy",
+        "Balances",
         "Forces of the walls",
         "Numerics and cautions",
         "How the run was made",

@@ -48,7 +48,7 @@ def section(source: Source) -> Section | None:
     if ledger is not None:
         body += _table(source, ledger)
     body += charts_side_by_side({name: f"{of['title']} against time" for name, of in charts.items()})
-    return Section("balance", "Balance of mass, momentum and energy", body, {"charts": charts})
+    return Section("balance", "Balances", body, {"charts": charts})
 
 
 def _ledger(source: Source) -> xarray.Dataset | None:
