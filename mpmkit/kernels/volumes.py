@@ -8,7 +8,7 @@ from numba import prange
 from .compile import CHUNK, chunk_count, kernel
 
 FEW = 20_000
-"""Particles up to which a copy takes less than the start of several threads."""
+"""Up to this number of particles a copy takes less time than the start of several threads."""
 
 
 @kernel()
@@ -22,7 +22,7 @@ def stretch(rate, dt, initial_volume, volume_ratio, volume):
 
 
 def assign(field: np.ndarray, values: np.ndarray) -> None:
-    """``field[:] = values``, ``(n,)``, by all threads where that is worth it.
+    """``field[:] = values``, ``(n,)``, with all threads if that is faster.
 
     Raises:
         ValueError: the values have another shape.
