@@ -18,31 +18,15 @@ set_values = click.option(
 )
 until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
 threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads to use; default: as many as make the run faster."
+    "--threads",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Threads to use; default: as many as make the run faster.",
 )
 quiet = click.option("--quiet", is_flag=True, help="Print only errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
 overwrite_file = click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; default: runs/<case name>.")
-study_out = click.option(
-    "--out", type=PATH, metavar="DIR", help="The study's directory; default: runs/<study name>."
-)
-study_overwrite = click.option(
-    "--overwrite",
-    is_flag=True,
-    help="Replace results in the study's directory that do not belong to this study.",
-)
-member_threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads of each member; default: as the study says."
-)
-workers = click.option(
-    "--workers",
-    type=click.IntRange(min=1),
-    help="Members to run at the same time; default: as many as fit on the cores.",
-)
-scheduler = click.option(
-    "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."
-)
 no_plugins = click.Option(
     ["--no-plugins"],
     is_flag=True,
