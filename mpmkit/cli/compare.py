@@ -25,7 +25,7 @@ from .study import run_study
 def command(
     case: str, vary: tuple[str, ...], overrides: tuple[str, ...], until: float | None, how: ManyRuns
 ) -> None:
-    """Run CASE with every combination of the values given, and gather them as a study does."""
+    """Run CASE with every combination of the given values, and collect the results as a study does."""
     from ..case.load import name_from, read_case
     from ..case.overrides import apply_overrides
     from ..errors import CaseError

@@ -1,4 +1,4 @@
-"""Options that mean the same on every command that runs something."""
+"""Options with the same meaning in all commands that run something."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ set_values = click.option(
     metavar="PATH=VALUE",
     help="Change one value of the case, such as scheme.order=usf or bodies.0.material.yield_stress=50.",
 )
-until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
+until = click.option("--until", type=float, metavar="T", help="Simulated time, s; default: that of the case.")
 threads = click.option(
     "--threads",
     type=click.IntRange(min=1),
@@ -38,10 +38,10 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 def _leave_out_plugins() -> None:
-    """In this process and in those that it starts: by the environment, since nothing is loaded yet."""
+    """Leave out plug-ins in this process and its child processes, by an environment variable."""
     os.environ["MPMKIT_PLUGINS"] = ""
 
 
 def with_until(overrides: tuple[str, ...], until: float | None) -> tuple[str, ...]:
-    """The overrides, and after them that of the option ``--until``."""
+    """The overrides, followed by that of the option ``--until``."""
     return overrides if until is None else (*overrides, f"until={until!r}")
