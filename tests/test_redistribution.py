@@ -64,7 +64,7 @@ def filled(space, faces=WALLED, velocity=None, materials=(FLUID,), redistributio
 
 
 def disorder(simulation, amount=0.2, seed=3):
-    """Every particle moved by up to a part of its own size; sorted anew."""
+    """Every particle moved by up to a part of its own size, and sorted again."""
     p, rng = simulation.particles, np.random.default_rng(seed)
     p.position += rng.uniform(-amount, amount, p.position.shape) * 2 * p.box
     np.clip(p.position, 1e-6, CELLS * DX - 1e-6, out=p.position)
@@ -322,9 +322,9 @@ def test_few_particles_in_three_dimensions_are_a_warning():
     few, flat, rubber = filled("3d"), filled("plane-strain"), filled("3d", materials=(RUBBER,))
     data = few.case.model_dump()
     data["bodies"][0]["particles_per_cell"] = 27
-    assert any("bodies.0 has 8 particles a cell" in said for said in forewarnings(few.case))
+    assert any("bodies.0 has 8 particles per cell" in said for said in forewarnings(few.case))
     for case in (flat.case, rubber.case, parse_case(data)):
-        assert not any("particles a cell" in said for said in forewarnings(case))
+        assert not any("particles per cell" in said for said in forewarnings(case))
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,7 @@ def _few_particles(case: Case) -> Iterator[str]:
         count = math.prod(body.particles_along_axes(case.space_.dim))
         if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
             yield (
-                f"{where.removesuffix('.material')} has {count} particles a cell: in three dimensions a "
+                f"{where.removesuffix('.material')} has {count} particles per cell: in three dimensions a "
                 "fluid that is sheared far flows too easily with fewer than "
                 f"{ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
                 "with 8, 0.6 % with 27); see particles_per_cell"

@@ -44,7 +44,7 @@ def require_threads() -> None:
     if _threads_lost:
         raise MpmkitError(
             "mpmkit cannot run here: this process was forked from one that had used mpmkit's threads, which "
-            "do not survive a fork; start processes anew, with multiprocessing.get_context('spawn')"
+            "do not survive a fork; start new processes, with multiprocessing.get_context('spawn')"
         )
 
 

@@ -141,7 +141,7 @@ def test_quarter_at_5_mm(validate):
 
 
 def test_quarter_model_agrees_with_axisymmetric(validate):
-    """Two spaces, two sets of kernels, one body: 20 mm; 8 particles a cell are enough while it falls."""
+    """Two spaces, two sets of kernels, one body: 20 mm; 8 particles per cell are enough while it falls."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(20)), until=0.3)
     few = ["bodies.0.particles_per_cell=8", "grid.cell_size=0.02"]
     domain = 'grid.domain={"x": [0, 0.36], "y": [0, 0.36], "z": [0, 0.32]}'
@@ -152,7 +152,7 @@ def test_quarter_model_agrees_with_axisymmetric(validate):
 
 @pytest.mark.slow
 def test_quarter_model_agrees_with_axisymmetric_to_its_rest(validate):
-    """27 particles a cell, as many at the end as at the start."""
+    """27 particles per cell, as many at the end as at the start."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=1.4)
     quarter = Slump(mpmkit.load_case(ROOT / "cases/slump_quarter.json"), until=1.4)
     off = np.abs(quarter.spread / round_body.spread - 1).max()
