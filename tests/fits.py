@@ -1,4 +1,4 @@
-"""A fit that costs nothing: an executor with a closed form in the place of runs."""
+"""Fits that cost little: a closed form in the place of runs, and a tiny block that flows apart."""
 
 import copy
 import math
@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray
+from test_cli import CASE as BLOCK
 
+import mpmkit
 from mpmkit.fitting import parse_fit
 from mpmkit.study.work import Outcome
 
@@ -159,3 +161,30 @@ def t500(tau0, stress):
     """s"""
     end = final_spread(tau0)
     return time_scale(stress) * math.log((end - FIRST) / (end - 0.5))
+
+
+VISCOSITY_OF_A_BLOCK = "bodies.0.material.viscosity"
+
+
+def block_of(viscosity):
+    """The content of a fit file: the spread of a tiny block at two times, from a run with this viscosity."""
+    case = copy.deepcopy(BLOCK) | {"until": 0.2}
+    truth = copy.deepcopy(case)
+    truth["bodies"][0]["material"]["viscosity"] = viscosity
+    spread = mpmkit.run(mpmkit.parse_case(truth)).spread_diameter
+    measured = [
+        {
+            "variable": "spread_diameter",
+            "time": time,
+            "value": float(spread.interp(time=time)),
+            "relative_uncertainty": 0.005,
+        }
+        for time in (0.1, 0.2)
+    ]
+    test = {"case": case, "measurements": measured, "stages": [{}], "model_error": 0}
+    return {
+        "name": "block",
+        "tests": {"block": test},
+        "parameters": {VISCOSITY_OF_A_BLOCK: {"low": 100, "high": 2000}},
+        "pages": False,
+    }
