@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 
 import pytest
+from wall_case import ABSENT, changed
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.forewarnings import forewarnings
@@ -134,6 +135,14 @@ def test_what_rests_on_its_floor_does_not_hang():
     assert said(scene(resting, faces={"x_min": "slip", "z_min": "slip"})) == ""
     full = scene(box([0, 0], [2, 2]), faces=dict.fromkeys(("x_min", "x_max", "z_min", "z_max"), "slip"))
     assert said(full) == ""
+
+
+def test_a_wall_with_sides_that_overlap_is_said():
+    """Weights reach one and a half cells into a wall: with two sides, it needs three cells."""
+    thickness = "walls.mould.surface.thickness"
+    thin, enough, solid = (parse_case(changed(thickness, value)) for value in (0.058, 0.06, ABSENT))
+    assert "walls.mould is 2.9 cells thick" in said(thin)
+    assert "cells thick" not in said(enough) + said(solid)
 
 
 # --- Bodies that touch

@@ -16,6 +16,7 @@ from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, mo
 from ..contracts import (
     Beginning,
     BodyForce,
+    BodyShape,
     ConstitutiveLaw,
     Contact,
     EquationOfState,
@@ -33,7 +34,6 @@ from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
-from ..geometry import AnyShape
 from ..registry.audit import forces
 from ..registry.audit.initial_fields import initial_values, shape_of
 from ..spaces import SPACES, Space
@@ -121,7 +121,7 @@ ParticleCount = Annotated[int, Field(gt=0, le=1000)]
 class Body(Model):
     """A shape filled with a material."""
 
-    shape: AnyShape = Field(description="where the body is at the start")
+    shape: BodyShape = Field(description="where the body is at the start")
     material: Material = Field(description="what the body is made of")
     particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
         "1",

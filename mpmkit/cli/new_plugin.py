@@ -19,6 +19,7 @@ KINDS = [
     "redistribution",
     "refinement",
     "equation_of_state",
+    "body_shape",
     "surface",
     "contact",
     "body_force",

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
-from .elementary import SMALLEST, power
-from .tensors import shear_squared
+from .compile import CHUNK, chunk_count, inline, kernel
+from .elementary import cube_root
+from .tensors import squares_of_shear
 
 
 @kernel()
@@ -42,28 +41,38 @@ def hold_volume(L, volume, position, radial, box, half_size, follows, largest):
     the largest shear rate γ̇, 1/s, of its particles.
     """
     n, dim = box.shape
+    gradients, boxes, half_sizes = L.reshape(-1), box.reshape(-1), half_size.reshape(-1)
     for c in prange(chunk_count(n)):
         begin, end = c * CHUNK, min(n, (c + 1) * CHUNK)
-        size = volume[begin:end].copy()
+        side = volume[begin:end].copy()
         if radial:
-            for k in range(len(size)):
-                size[k] /= 2 * math.pi * position[begin + k, 0]
-        half = np.empty(len(size))
+            for k in range(len(side)):
+                side[k] /= 2 * math.pi * position[begin + k, 0]
         if dim == 2:
-            for k in range(len(size)):
-                half[k] = 0.5 * math.sqrt(size[k])
+            for k in range(len(side)):
+                side[k] = 0.5 * math.sqrt(side[k])
         else:
-            for k in range(len(size)):
-                half[k] = 0.5 * power(max(size[k], SMALLEST), 1 / 3)
+            for k in range(len(side)):
+                side[k] = 0.5 * cube_root(side[k]) if side[k] > 0.0 else math.nan
+        _hold(boxes[dim * begin : dim * end], side, dim)
+        if follows:
+            _hold(half_sizes[dim * begin : dim * end], side, dim)
+        squares_of_shear(gradients[9 * begin : 9 * end], side)
         most = 0.0
-        for p in range(begin, end):
-            side = half[p - begin] if volume[p] > 0.0 else math.nan
-            for a in range(dim):
-                box[p, a] = side
-                if follows:
-                    half_size[p, a] = side
-            most = max(most, shear_squared(L, p))
+        for square in side:
+            most = max(most, square)
         largest[c] = math.sqrt(most)
+
+
+@inline()
+def _hold(sides, side, dim):
+    """All sides of a box are alike; of a volume of zero and less they are no number."""
+    if dim == 3:
+        for k in range(len(side)):
+            sides[3 * k] = sides[3 * k + 1] = sides[3 * k + 2] = side[k]
+    else:
+        for k in range(len(side)):
+            sides[2 * k] = sides[2 * k + 1] = side[k]
 
 
 @kernel()

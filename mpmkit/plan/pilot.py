@@ -33,7 +33,7 @@ COARSEST = 3.0
 
 @dataclass(frozen=True)
 class Growth:
-    """Results of a pilot, relative to its initial state."""
+    """Results of a pilot, relative to its first step and to the particles that are ``counted``."""
 
     steps: float
     """steps done over those that the first step's length would need"""
@@ -76,7 +76,7 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         raise
     except MpmkitError:
         return None
-    first_step, first = simulation.time_step, len(simulation.particles)
+    first_step, first = simulation.time_step, counted(simulation)
     begin, before = clock.perf_counter(), simulation.particle_steps
     start_steps, start_time = simulation.steps, simulation.time
     parts = PartClock(simulation)
@@ -106,6 +106,11 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         redistributions=parts.redistributions / passed,
         of_the_case=coarse is case,
     )
+
+
+def counted(simulation: Simulation) -> float:
+    """Particles at the start; of a scene with sources, those that there will have been at its end."""
+    return expected_particles(simulation.case) if simulation.case.sources else len(simulation.particles)
 
 
 def coarser(case: Case) -> Case:

@@ -26,6 +26,7 @@ KINDS = {
     "redistribution": "redistribution",
     "refinement": "refinement",
     "equation_of_state": "equation of state",
+    "body_shape": "body shape",
     "surface": "surface",
     "contact": "contact",
     "body_force": "body force",

@@ -216,3 +216,26 @@ def test_the_settings_of_the_paper_do_not_rest(validate):
     rate = (slump.at(4.0) / slump.at(2.0) - 1) / 2
     assert rate > 0.01  # it does not pass the criterion of rest
     assert slump.energy[-1] > 1e-4
+
+
+def test_the_sound_speed_has_no_influence(validate):
+    """Stiffness beyond that of a nearly incompressible fluid changes the noise of the pressure only.
+
+    The paper's factor is 50. A correction of J that came at once would be a pressure of ρ c² times as much:
+    with ``even`` it once took 4 % of the spread at 0.3 s here, and 7 % with cells of 10 mm.
+    """
+    soft, stiff = (
+        Slump(
+            mpmkit.load_case(
+                ROOT / "cases" / "slump.json",
+                [*cells(20), f'bodies.0.material.sound_speed={{"factor": {factor}}}'],
+            ),
+            0.3,
+        )
+        for factor in (10, 50)
+    )
+    name = "Slump, 20 mm, c = 50 √(2 g h) in place of 10"
+    validate(f"{name}: spread at 0.3 s", stiff.spread[-1] / soft.spread[-1], close_to(1.0, rel=0.01))
+    available = 9.81 * stiff.simulation.particles.mass.sum() * 0.3 / 4
+    fed = stiff.simulation.redistribution_energy / available
+    validate(f"{name}: energy that the redistribution adds, over m g h/4", fed, below(0.06, "0"))
