@@ -125,6 +125,22 @@ def test_the_flow_time_of_a_v_funnel_is_that_of_its_finest_run(validate):
 
 
 @pytest.mark.slow
+def test_a_flow_table_spreads_mortar_with_a_part_of_the_energy_of_its_drops(validate):
+    """A table that stops gives up to m g h to the mortar and keeps the rest; a rigid body would take nothing.
+
+    Mortar without viscosity that took all of it would spread farthest.
+    """
+    history, p = run("flow_table"), given("flow_table")
+    work = float(history["force_work"].values[-1, 0]) / float(history["total_mass"].values[-1])
+    energy = G * p["drops"] * p["drop_height"]
+    validate("Flow table: work on the mortar over m g h of all drops", work / energy, below(1.0))
+    farthest = FORMULAS["flow_table"][0].value(p)
+    found = measured("flow_table", "flow_value")
+    validate("Flow table: spread over the largest that energy allows", found / farthest, below(1.0))
+    validate("Flow table: spread over the foot of the mould", found / (2 * p["bottom_radius"]), above(1.2))
+
+
+@pytest.mark.slow
 def test_a_frictionless_barrier_is_pushed_along_its_normal(validate):
     """The face leans back by 30°: for each newton along the flow cot 60° of it pushes the barrier down."""
     down = -measured("barrier", "upward_force") / measured("barrier", "force_on_barrier")
