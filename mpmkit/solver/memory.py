@@ -40,9 +40,12 @@ MARGIN = 5
 """Nodes along an axis that the window has in addition to the cells of the material."""
 
 
-def expected_particles(case: Case) -> float:
-    """Number of particles of a case: of its bodies, from their exact volumes, and of all that comes in."""
-    return incoming_particles(case) + sum(
+def expected_particles(case: Case, until: float | None = None) -> float:
+    """Number of particles of a case: of its bodies, from their exact volumes, and of all that comes in.
+
+    It comes in by the time ``until``, s; default: the end of the run.
+    """
+    return incoming_particles(case, case.end if until is None else until) + sum(
         expected_count(
             body.shape,
             case.space_,
@@ -54,11 +57,11 @@ def expected_particles(case: Case) -> float:
     )
 
 
-def incoming_particles(case: Case) -> float:
-    """Number of particles that sources bring in by the end of the run."""
+def incoming_particles(case: Case, until: float) -> float:
+    """Number of particles that sources bring in by a time, s."""
     return sum(
         len(section_of(case, name).area)
-        * one.source.pushed(case.end, case.mouth_area(name), one.material.density)
+        * one.source.pushed(until, case.mouth_area(name), one.material.density)
         / row_length(case, name)
         for name, one in case.sources.items()
     )
