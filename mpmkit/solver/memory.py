@@ -45,16 +45,17 @@ def expected_particles(case: Case, until: float | None = None) -> float:
 
     It comes in by the time ``until``, s; default: the end of the run.
     """
-    return incoming_particles(case, case.end if until is None else until) + sum(
-        expected_count(
-            body.shape,
-            case.space_,
-            case.grid.cell_size,
-            body.particles_along_axes(case.space_.dim),
-            keep=case.domain_bounds,
+    with blaming_plugins(plugins_of(case)):
+        return incoming_particles(case, case.end if until is None else until) + sum(
+            expected_count(
+                body.shape,
+                case.space_,
+                case.grid.cell_size,
+                body.particles_along_axes(case.space_.dim),
+                keep=case.domain_bounds,
+            )
+            for body in case.bodies
         )
-        for body in case.bodies
-    )
 
 
 def incoming_particles(case: Case, until: float) -> float:
