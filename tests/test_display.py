@@ -41,7 +41,7 @@ def test_compiling_is_said_when_something_is_compiled_and_once(monkeypatch):
             with event.trigger_event("numba:compile"):
                 pass
     assert shown.getvalue().count(COMPILING) == 1
-    with event.trigger_event("numba:compile"):  # nobody listens any more
+    with event.trigger_event("numba:compile"):  # no listener is left
         pass
     assert shown.getvalue().count(COMPILING) == 1
 

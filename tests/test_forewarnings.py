@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from wall_case import ABSENT, changed
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.forewarnings import forewarnings
@@ -158,6 +159,14 @@ def test_a_velocity_that_is_an_initial_field_is_known_as_the_key_is():
         by_a_field(dict(second) | {"velocity": [0.1, 0]}),
     )
     assert said(scene(*apart, faces=FLOOR, gravity=gravity)) == ""
+
+
+def test_a_wall_with_sides_that_overlap_is_said():
+    """Weights reach one and a half cells into a wall: with two sides, it needs three cells."""
+    thickness = "walls.mould.surface.thickness"
+    thin, enough, solid = (parse_case(changed(thickness, value)) for value in (0.058, 0.06, ABSENT))
+    assert "walls.mould is 2.9 cells thick" in said(thin)
+    assert "cells thick" not in said(enough) + said(solid)
 
 
 # --- Bodies that touch

@@ -23,7 +23,7 @@ def home(tmp_path, monkeypatch):
     home, here = tmp_path / "home", tmp_path / "here"
     home.mkdir()
     here.mkdir()
-    # Caches of compiled code and of fonts stay where they are: they take long to make anew.
+    # Caches of compiled code and of fonts stay where they are: making them again takes long.
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_root().parent))
     monkeypatch.setenv("MPLCONFIGDIR", matplotlib.get_configdir())
     monkeypatch.setenv("HOME", str(home))

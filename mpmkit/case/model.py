@@ -327,7 +327,7 @@ class Case(Model):
 
     @property
     def filled(self) -> list[Body | Inflow]:
-        """The bodies, then the sources: particles are numbered by it, see ``Particles.body``."""
+        """The bodies, then the sources, in the order of the numbers in ``Particles.body``."""
         return [*self.bodies, *self.sources.values()]
 
     @cached_property

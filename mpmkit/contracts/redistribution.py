@@ -71,7 +71,11 @@ class Redistributing(Protocol):
         time: where flow sets in at a stroke, the rate of the moment is not that of all this time."""
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
-        """J ← factor J, for fluids only."""
+        """J ← factor J, for fluids only, at once: the pressure jumps by ρ c² (1 - factor)."""
+
+    def expand(self, strain: np.ndarray) -> None:
+        """ln J ← ln J + strain, for fluids only, in proportion to the shear that follows: over as much of it
+        as there was since the last redistribution. The next call replaces what is left."""
 
     def shift(self, displacement: np.ndarray) -> None:
         """x ← x + δx, for fluids only, not beyond walls; v changes by its affine part; Σ m v is kept."""

@@ -10,7 +10,7 @@ from .base import Plugin
 
 
 class Refining(Protocol):
-    """What a refinement works on. Arrays have an entry a particle, ``(n,)``, as the particles are now.
+    """Access of a refinement to the scene. Arrays have an entry for each present particle, ``(n,)``.
 
     After ``split`` and ``merge`` the particles are different: read the arrays again.
     """

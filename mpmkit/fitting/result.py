@@ -140,7 +140,8 @@ class FitResult:
 
 def names_of(solution: Solution) -> Names:
     """Names and units of the parameters of a solution."""
-    return Names(solution.coordinates.paths, solution.runs.tests[0].stages[-1].case)
+    stage = solution.runs.tests[0].stages[-1]
+    return Names(solution.coordinates.paths, stage.case, stage.units)
 
 
 def found_in(solution: Solution, level: float) -> dict[str, Found]:

@@ -1,6 +1,13 @@
 """Bodies: the solids that they are made of, the particles that fill them; walls: distances and motions."""
 
 from ..contracts.solid import HalfSpace, Inverted, Jointed, Shell, Solid
+from .closed_mesh import (
+    copy_of_file,
+    inside_surface,
+    problem_of_file,
+    surface_in_file,
+    volume_in_surface,
+)
 from .contour import contour
 from .distance import (
     Ball,
@@ -19,13 +26,6 @@ from .moving import MovingSolid
 from .overlap import shared_volume
 from .revolved import part_of_revolved
 from .sampling import Sample, expected_count, sample
-from .surface_in_file import (
-    copy_of_file,
-    inside_surface,
-    problem_of_file,
-    surface_in_file,
-    volume_in_surface,
-)
 from .turning import axis_problem, generator, rotation
 
 __all__ = [

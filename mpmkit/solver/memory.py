@@ -222,7 +222,7 @@ def require_memory(case: Case) -> None:
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
             f"and needs {_gib(needed)} of memory, but {_gib(there)} is left for this run {limit}; "
-            f"use larger cells, fewer particles a cell, {fewer_rows}or a symmetry plane"
+            f"use larger cells, fewer particles per cell, {fewer_rows}or a symmetry plane"
         )
 
 

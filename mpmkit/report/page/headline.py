@@ -18,6 +18,7 @@ from ...output.summary import (
     lifted_later,
     trusted_to_the_end,
 )
+from . import mass_flow
 from .section import Section, paragraph
 from .source import Source
 from .words import count, duration, length, number, seconds, unit_of
@@ -80,7 +81,7 @@ def figures(source: Source) -> list[tuple[str, str, str]]:
         found += [_spread(source), *_t500(source), _slump(source)]
     else:
         found += _extent(source)
-    found += [_height(source), *_measurements(source), _speed(source)]
+    found += [_height(source), *_measurements(source), *mass_flow.figures(source), _speed(source)]
     if not source.running:
         summary = source.results.summary
         took = duration(summary["wall_time"])
