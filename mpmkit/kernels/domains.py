@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, inline, kernel
