@@ -200,10 +200,10 @@ def test_a_run_that_a_guard_stops_turns_the_search_back(tmp_path):
 
 def test_a_narrow_domain_does_not_change_the_interval():
     """Runs whose material leaves the domain say that their spread is at least the last one."""
-    found = []
+    found, rough = [], FINAL | {"uncertainty": 0.05}
     for widest in (2.0, 0.62):
         executor = Pretend(widest=widest)
-        result = mpmkit.fit(a_fit([FINAL]), executor=executor)
+        result = mpmkit.fit(a_fit([rough]), executor=executor)
         stresses = [data["bodies"][0]["material"]["yield_stress"] for data in executor.ran]
         assert final_spread(min(stresses)) > 0.62  # at least one run leaves the narrow domain
         found.append(result.parameters[YIELD_STRESS])
@@ -211,7 +211,7 @@ def test_a_narrow_domain_does_not_change_the_interval():
             result.sentences
         )
     wide, narrow = found
-    assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.01)
+    assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.02)
 
 
 def test_a_first_run_that_a_guard_stops_is_told(tmp_path):
