@@ -50,7 +50,7 @@ def command(
 ) -> None:
     """Find the largest stable time step of CASE for every combination of the schemes named.
 
-    A step is stable if it creates no energy and no momentum, and leads where a fine solution leads.
+    A step is stable if it creates no energy and no momentum, and the particles stay close to a fine solution.
     """
     from dataclasses import asdict
 
@@ -66,7 +66,7 @@ def command(
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
     directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
-    refuse_existing(picture_in(directory), overwrite)  # before hours are spent on it
+    refuse_existing(picture_in(directory), overwrite)  # before the search, which may take hours
     if isinstance(data.get("until"), dict):
         say("until has conditions: every combination is tried to until.at_most")
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
