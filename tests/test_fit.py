@@ -79,6 +79,21 @@ def test_both_come_from_the_final_spread_and_t500():
         assert found[path].low < truth < found[path].high
 
 
+def test_parameters_at_the_top_of_a_laboratory_case_are_found(tmp_path):
+    measured = [FINAL, {"variable": "t500", "value": t500(150, 40), "relative_uncertainty": 0.03}]
+    parameters = {f"parameters.{path.split('.')[-1]}": PARAMETERS[path] for path in PARAMETERS}
+    fit = a_fit(measured, parameters, changes={"case": "cases/lab/slump_flow.json"})
+    result = mpmkit.fit(fit, tmp_path, executor=Pretend())
+    for (path, found), truth, unit in zip(result.parameters.items(), (150, 40), ("Pa", "Pa s"), strict=True):
+        assert found.value == pytest.approx(truth, rel=0.02)
+        assert found.unit == unit
+        assert path.startswith("parameters.")
+    (curve_found,) = result.curves
+    assert curve_found.stress == pytest.approx(150 + 40 * curve_found.rate, rel=0.03)
+    page = (tmp_path / "fit.html").read_text(encoding="utf-8")
+    assert "yield stress (Pa)" in page
+
+
 def test_a_prior_is_no_measurement():
     prior = {"value": 60, "deviation": 6}
     result = mpmkit.fit(
