@@ -1,4 +1,4 @@
-"""What somebody hears who writes a case in the words of the field, or in something that is nearly JSON."""
+"""Messages for cases written with other words of the field, or in something that is nearly JSON."""
 
 import copy
 import json

@@ -273,7 +273,7 @@ def test_a_member_overrides_what_all_have():
 def test_compare(here, capsys, monkeypatch):
     """The grid of the options on the case, with the changes that all have; in one process here."""
     executor = Now()
-    monkeypatch.setattr("mpmkit.cli.study._cluster", lambda address: nullcontext(executor))
+    monkeypatch.setattr("mpmkit.cli.many_runs.ManyRuns.cluster", lambda how: nullcontext(executor))
     (here / "tiny.json").rename(here / "a case.json")
     changes = ["--until", "0.004", "--set", "bodies.0.material.density=900"]
     axes = ["--vary", "scheme.order=usl,usf", "--vary", "bodies.0.velocity=[0,0],[200,0]"]

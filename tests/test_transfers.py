@@ -260,7 +260,7 @@ def test_gather(space, support, flip, asked):
 @spaces
 @supports
 def test_gather_is_exact_for_a_uniform_and_for_a_linear_field(dim, radial, support):
-    """v = A x + c gives C = A, but for axes on which the particle barely knows a slope; uniform, C = 0."""
+    """v = A x + c gives C = A, except along axes without a usable slope; a uniform v gives C = 0."""
     scene = Scene(dim, support, radial, affine=True)
     x = CELL * (np.stack(np.indices(scene.shape[:dim]), axis=-1).reshape(-1, dim) + scene.lower)
     A, c = scene.rng.normal(size=(dim, dim)), scene.rng.normal(size=dim)

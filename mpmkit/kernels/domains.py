@@ -18,9 +18,9 @@ def follow_strain(L, dt, box, least, half_size):
     The half-sizes that the shape function sees are those of the box, or ``least``; they stay as they are
     where ``least`` has no rows.
 
-    What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
-    keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave
-    the box as it is, where the stretch U_ii grows with shear, and F_ii shrinks as the material turns.
+    The box must fill the space between a particle's neighbours. Rows that slide over each other keep their
+    distance, and a body that rotates as a whole keeps its boxes. So simple shear and rotation do not change
+    the box. The stretch U_ii, in contrast, grows with shear, and F_ii shrinks as the material rotates.
     """
     n, dim = box.shape
     follows = len(least) > 0
@@ -36,9 +36,9 @@ def follow_strain(L, dt, box, least, half_size):
 def hold_volume(L, volume, position, radial, box, half_size, follows, largest):
     """l = V^(1/dim) / 2 along every axis, with the area V / (2 π r) for the volume in an axisymmetric scene.
 
-    A box of equal sides knows no direction that shear could have scrambled. The half-sizes that the shape
-    function sees are those of the box if it ``follows``. ``largest``, an entry a chunk, becomes the largest
-    shear rate γ̇, 1/s, of its particles.
+    A box with equal sides has no direction, so that shear cannot distort it. The half-sizes that the shape
+    function sees are those of the box if it ``follows``. ``largest``, with an entry for each chunk, becomes
+    the largest shear rate γ̇, 1/s, of its particles.
     """
     n, dim = box.shape
     gradients, boxes, half_sizes = L.reshape(-1), box.reshape(-1), half_size.reshape(-1)
@@ -77,7 +77,7 @@ def _hold(sides, side, dim):
 
 @kernel()
 def volume_within_reach(volume, half_size, cell_size, within):
-    """V Π min(1, Δx/(2 l_i)), ``(n,)``: what of each box is where its weights are, no longer than a cell."""
+    """V Π min(1, Δx/(2 l_i)), ``(n,)``: volume of the part of each box that its weights see."""
     n, dim = half_size.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):

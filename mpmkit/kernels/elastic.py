@@ -1,4 +1,4 @@
-"""The elastic predictor of laws that relax: stress turned with the material and strained elastically."""
+"""The elastic predictor of laws that relax: the stress rotates with the material and grows elastically."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def elastic_trial(L, dt, shear_modulus, stress, shear_stress):
 
 @kernel()
 def shrink(stress, shear_stress, allowed):
-    """s ← s τ/τ*, in place, ``(n, 6)``: radially from its shear stress τ* to the allowed τ, ``(n,)``, Pa."""
+    """s ← s τ/τ*, in place, ``(n, 6)``: radial return from the shear stress τ* to the allowed τ, Pa."""
     n = len(stress)
     for chunk in prange(chunk_count(n)):
         for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):

@@ -1,4 +1,4 @@
-"""Quadratic B-splines on a lattice, the parts of boxes in its cells, and slopes of what is on its nodes."""
+"""Quadratic B-splines on a lattice, the parts of boxes in its cells, and the slopes of nodal fields."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .compile import CHUNK, chunk_count, function, inline, kernel
 from .vectors import lane, load_twice, plus, zero
 
 SUPPORT, PARTS = 3, 2
-"""Nodes along an axis that a spline touches, and cells that a box no wider than a cell lies in."""
+"""Nodes along an axis that a spline touches, and cells that a box at most one cell wide touches."""
 
 
 @inline()
 def spline(x):
-    """First of the three nodes that the spline of a place touches, its three weights, and the distance of the
-    place from the middle node, -1/2 to 1/2. The place is given in spacings.
+    """First of the three nodes that the spline at a place touches, the three weights, and the distance of the
+    place from the middle node, -1/2 to 1/2. Places and distances are in spacings of the lattice.
     """
     first = math.floor(x - 0.5)
     d = x - first - 1
@@ -27,9 +27,9 @@ def spline(x):
 
 @kernel()
 def fill_splines(x, inverse, base, weight):
-    """Weights ``(n, dim, 3)`` of the quadratic B-spline: a hat averaged over one spacing.
+    """Weights ``(n, dim, 3)`` of the quadratic B-spline: a hat function averaged over one spacing.
 
-    ``inverse`` is one over the spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
+    ``inverse`` is 1 / spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
     """
     n, dim = x.shape
     for c in prange(chunk_count(n)):
@@ -40,7 +40,7 @@ def fill_splines(x, inverse, base, weight):
 
 @kernel()
 def fill_parts(x, half_size, inverse, base, part):
-    """Part ``(n, dim, 2)`` of each box in cell ``base`` and in the next; a box is at most one cell wide."""
+    """Part ``(n, dim, 2)`` of each box in cell ``base`` and the next one; boxes are at most a cell wide."""
     n, dim = x.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
@@ -69,9 +69,9 @@ def _along_row(first, second, third, row):
 def gather_slope(dim: int):
     """The kernel that takes Σ ∇N value of a nodal field to the particles, into ``slope (n, dim)``, 1/m.
 
-    The distance d from the middle node, in spacings, is the difference of the outer weights, so that the
-    slopes of the splines need no table: d - 1/2, -2 d and d + 1/2, over the spacing. Rows are read as four
-    doubles, so that ``field`` must have one more of them behind it than nodes.
+    The distance d from the middle node, in spacings, is the difference of the outer weights. So the slopes of
+    the splines need no table; they are d - 1/2, -2 d and d + 1/2, divided by the spacing. Rows are read as
+    four doubles: ``field`` must have one more of them behind it than nodes.
     """
     last = dim - 1
 
@@ -116,8 +116,8 @@ def gather_slope(dim: int):
 def add_sizes(dim: int):
     """The function that adds Σ size N of particles in any order to ``sums (nodes,)``.
 
-    It goes from particle to particle without a table of weights, so that it is slower than ``scatter_pairs``
-    and takes no memory: for what is looked at now and then.
+    It uses no table of weights, so that it takes no memory, but is slower than ``scatter_pairs``. Use it for
+    what is needed only rarely.
     """
     along, planes = dim - 1, SUPPORT if dim == 3 else 1
 

@@ -8,17 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from ..case.measurements import NAMES, functions, measured
+from ..case.measurements import NAMES, Measurement, functions, means, measured
 from ..kernels.extents import extents
 from ..solver.simulation import Simulation
 
 
 def measurements(simulation: Simulation, row: Mapping[str, Any]) -> dict[str, float]:
     """The measurements of a case for a row of its history, which is given without them."""
-    if not simulation.case.measurements:
+    return _measured(simulation, row, simulation.case.measurements)
+
+
+def momentary(simulation: Simulation) -> dict[str, Any]:
+    """The scalars of the history at the present step, with the measurements that need no row before it."""
+    values, every = simulation.measured(), simulation.case.measurements
+    passing = means(every)
+    return values | _measured(simulation, values, {key: every[key] for key in every if key not in passing})
+
+
+def _measured(
+    simulation: Simulation, row: Mapping[str, Any], which: Mapping[str, Measurement]
+) -> dict[str, float]:
+    if not which:
         return {}
     names = {name: float(row[name]) for name in NAMES if name in row} | {"time": simulation.time}
-    return measured(simulation.case.measurements, names, functions(_Look(simulation, row)))
+    return measured(which, names, functions(_Look(simulation, row)))
 
 
 class _Look:
@@ -62,6 +75,21 @@ class _Look:
         p, grid = s.particles, s.grid
         ends = extents(p.position, p.box, 1, grid.extent, grid.periodic, grid.cell_size / 2)
         return float(ends[0, 1] + grid.lower[0]) if math.isfinite(ends[0, 1]) else math.nan
+
+    def width(self, place: float) -> float:
+        """Extent of the material along y, m, in 3-D, of the particles within half a cell of a place along the
+        first axis; twice that beside a plane of symmetry. Boxes count as in ``spread_diameter``."""
+        s = self._simulation
+        p, grid, faces = s.particles, s.grid, s.case.grid.faces
+        near = np.abs(p.position[:, 0] - (place - grid.lower[0])) <= grid.cell_size / 2
+        if s.case.space_.dim < 3 or not near.any():
+            return math.nan
+        half = np.minimum(p.box[near, 1], grid.cell_size / 2)
+        low = max(float((p.position[near, 1] - half).min()), 0.0)
+        high = min(float((p.position[near, 1] + half).max()), float(grid.extent[1]))
+        if faces.get("y_min") == "symmetry":
+            return 2 * high
+        return 2 * (float(grid.extent[1]) - low) if faces.get("y_max") == "symmetry" else high - low
 
     def force(self, wall: str, axis: str) -> float:
         """Force of a wall on the material, N, mean over the time since the last row."""

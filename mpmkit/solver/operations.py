@@ -353,7 +353,7 @@ class SceneOperations:
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
         self.relax_volume(dt)
-        volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
+        self.stage.stretch(self._treated(self._rate), dt)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
         for group in p.present_groups:

@@ -7,7 +7,7 @@ import numpy as np
 from ...case.model import Scheme
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
-from ...kernels import domains, shifts, sums
+from ...kernels import domains, shifts, sums, volumes
 from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
 from ...kernels.splines import SUPPORT
@@ -26,6 +26,7 @@ from .mirrored import Mirrored
 OVER_MEAN = 2.0
 """The shear rate is limited to this multiple of the largest mean rate since the last redistribution. A flow
 that grows linearly from rest reaches this ratio; an impact after a free flight would reach hundreds."""
+SCALARS = ("shear", "elapsed", "energy", "rate", "expanding")
 AT_A_WALL = 1e-6
 """Distance, in cells, that a shift keeps from a wall."""
 
@@ -45,12 +46,13 @@ class Stage:
         acts: whether the redistribution can ever be due; otherwise shear is not summed up.
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
         elapsed: s, since then.
-        energy: J, energy added by all redistributions so far (negative: removed). It is the sum of the
-            changes
-        of kinetic, strain, compressive and potential energy. Potential energy is that of the history: it has
-        no part along a periodic axis.
+        rate: largest γ̇ in the last step, 1/s.
+        expanding: shear, 1, over which the present expansions still act.
+        energy: J, energy added by all redistributions so far (negative: removed): the work of expansions, and
+            the changes of kinetic, strain, compressive and potential energy at each redistribution.
+            Potential energy is that of the history: it has no part along a periodic axis.
         momentum: N s, ``(dim,)``, momentum added by them. Shifts conserve momentum up to rounding, except at
-        moving walls.
+            moving walls.
     """
 
     nodes: contract.Lattice
@@ -69,7 +71,7 @@ class Stage:
         """``spacing``: m, of particles that come in; used if there are none yet."""
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
-        self.shear = self.elapsed = self.energy = 0.0
+        self.shear = self.elapsed = self.energy = self.rate = self.expanding = 0.0
         self.momentum = np.zeros(grid.dim)
         self._blocks: dict[tuple, Mirrored] = {}
         self._downwards = np.where(grid.periodic, 0.0, gravity)
@@ -79,12 +81,11 @@ class Stage:
         self._times = max(1, round(grid.cell_size / (self._typical_spacing() if len(particles) else spacing)))
 
     def state(self) -> State:
-        return {name: np.array(getattr(self, name)) for name in ("shear", "elapsed", "energy", "momentum")}
+        return {name: np.array(getattr(self, name)) for name in (*SCALARS, "momentum")}
 
     def restore(self, state: State) -> None:
-        self.shear, self.elapsed, self.energy = (
-            float(state[name]) for name in ("shear", "elapsed", "energy")
-        )
+        for name in SCALARS:
+            setattr(self, name, float(state[name]))
         self.momentum = state["momentum"].copy()
         self._blocks = {}
 
@@ -99,6 +100,24 @@ class Stage:
 
     # --- Every step
 
+    def stretch(self, volumetric_rate: np.ndarray, dt: float) -> None:
+        """Update J and V with the volumetric rate tr L, 1/s, and with the expansions that are due.
+
+        The largest shear rate is that of the step before: the present one is found after the volumes.
+        """
+        p = self._particles
+        shear = min(dt * self.rate, self.expanding)
+        if shear == 0:
+            volumes.stretch(volumetric_rate, dt, p.initial_volume, p.volume_ratio, p.volume)
+            return
+        energy = np.empty(chunk_count(len(p)))
+        volumes.stretch_and_expand(
+            volumetric_rate, dt, p.expansion, shear, p.pressure, p.initial_volume, p.volume_ratio, p.volume,
+            energy,
+        )  # fmt: skip
+        self.expanding -= shear
+        self.energy += float(energy.sum())
+
     def follow(self, dt: float) -> None:
         """Adjust boxes of fluids to their volume if boxes have equal sides, and sum up the shear."""
         most = 0.0
@@ -108,6 +127,7 @@ class Stage:
             rates = (shear_rate(self._particles.velocity_gradient[part]) for part in self._fluids())
             most = max((float(rate.max()) for rate in rates), default=0.0)
         if self.acts:
+            self.rate = most
             self.shear += dt * most
             self.elapsed += dt
 
@@ -207,6 +227,13 @@ class Stage:
         for part in self._fluids():
             p.volume_ratio[part] *= factor[part]
             p.volume[part] = p.initial_volume[part] * p.volume_ratio[part]
+
+    def expand(self, strain: np.ndarray) -> None:
+        p = self._particles
+        self._require(strain, "a strain of volume", (len(p),))
+        for part in self._fluids():
+            p.expansion[part] = strain[part] / self.shear
+        self.expanding = self.shear
 
     def shift(self, displacement: np.ndarray) -> None:
         p = self._particles
