@@ -10,6 +10,7 @@ from mpmkit.case.plugins import plugins_of
 from mpmkit.contracts import BodyShape, quantity
 from mpmkit.errors import CaseError, PluginStop
 from mpmkit.geometry import shared_volume
+from mpmkit.plan import plan
 from mpmkit.registry import Registered, Registry, audit, installed
 from mpmkit.solver.scene import make_particles
 from mpmkit.solver.simulation import Simulation
@@ -157,7 +158,7 @@ def test_one_at_fault_is_told(method):
     wrong, said = FAULTS[method]
     bad = type("Bad", (Ball,), {method: wrong, "__module__": __name__})
     with pytest.raises(PluginStop) as stop:
-        Simulation(scene(bad.name, plugin=bad))
+        plan(scene(bad.name, plugin=bad))
     assert "the plug-in 'ball-of-the-tests' (body shape)" in str(stop.value)
     assert said in str(stop.value)
 

@@ -9,7 +9,7 @@ import pytest
 
 from mpmkit.case import parse_case
 from mpmkit.errors import CaseError
-from mpmkit.plan import plan
+from mpmkit.plan import cheaper_models, plan
 from mpmkit.registry import installed
 from mpmkit.solver.ledger import IN, REST
 from mpmkit.solver.simulation import Simulation
@@ -178,3 +178,15 @@ def test_what_is_wrong_with_a_path_is_said(changes, sentence):
     with pytest.raises(CaseError) as error:
         case(PRINTED, **changes)
     assert sentence in str(error.value)
+
+
+def test_a_regularised_law_that_is_poured_is_told_what_it_costs_and_what_to_write():
+    """At rest its viscosity is τ0 m = 1 MPa s, so that the viscous limit, 3/8 ρ Δx²/μ, is right."""
+    regularised = {key: value for key, value in MORTAR.items() if key != "shear_modulus"} | {"law": "bingham"}
+    poured = case(POUR, material=regularised)
+    assert Simulation(poured).limits.viscous == pytest.approx(0.375 * DENSITY * 0.01**2 / 1e6, rel=1e-3)
+    (exact,) = (model for model in cheaper_models(poured) if model.name == "exact yield")
+    law = exact.case.sources["jug"].material.constitutive_law
+    assert (law.name, law.yield_stress, law.plastic_viscosity) == ("bingham-evp", 1000, 2)
+    assert exact.options[0].startswith("sources.jug.material=")
+    assert plan(exact.case)["limited_by"] == "acoustic"

@@ -95,7 +95,7 @@ def _falls_out(case: Case) -> Iterator[str]:
         lower, upper = _bounds(case, body)
         ends = case.grid.domain[case.space_.axes[axis]]
         distance = float(ends[1] - upper[axis]) if g[axis] > 0 else float(lower[axis] - ends[0])
-        speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
+        speed = float(case.velocity_at_start(body)[axis] * np.sign(g[axis]))
         pull = abs(float(g[axis]))
         if _is_a_sink(case, axis, upper=bool(g[axis] > 0)):
             continue
@@ -128,7 +128,7 @@ def _hangs(case: Case) -> Iterator[str]:
                 continue
             inward = -1.0 if upwards else 1.0
             for number, body in enumerate(case.bodies):
-                moves = inward * _velocity(case, body)[axis] > 0
+                moves = inward * case.velocity_at_start(body)[axis] > 0
                 falls = inward * g[axis] > NOTICED * float(np.linalg.norm(g)) > 0
                 opposite = case.grid.faces.get(_side(case, axis, not upwards))
                 between = opposite in CLOSED and _touches(case, body, axis, not upwards)
@@ -213,7 +213,7 @@ def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
         return bool(case.gravity_at_start.any()) or any(map(case.speed_at_start, (a, b)))
-    relative = (_velocity(case, b) - _velocity(case, a)) * case.end
+    relative = (case.velocity_at_start(b) - case.velocity_at_start(a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
     if not case.gravity_at_start.any():
@@ -280,9 +280,3 @@ def _side(case: Case, axis: int, upwards: bool) -> str:
 def _bounds(case: Case, body: Body) -> tuple[np.ndarray, np.ndarray]:
     lower, upper = body.shape.bounds(case.space_)
     return np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
-
-
-def _velocity(case: Case, body: Body) -> np.ndarray:
-    """The uniform initial velocity of a body, m/s; zero for a standing wave."""
-    uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * case.space_.dim
-    return np.array(uniform, dtype=float)

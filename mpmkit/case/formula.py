@@ -47,6 +47,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": min,
     "max": max,
     "sqrt": _root,
+    "cbrt": math.cbrt,
     "ceil": _ceil,  # for lengths in cells: a domain is a whole number of cells
     "sin": math.sin,
     "cos": math.cos,
@@ -117,8 +118,17 @@ def evaluate(
 
 def names_in(node: Node) -> set[str]:
     """The names that a formula uses, without those of functions."""
-    called = {id(call.func) for call in ast.walk(node) if isinstance(call, ast.Call)}
+    called = {id(function) for function in _called(node)}
     return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and id(name) not in called}
+
+
+def functions_in(node: Node) -> set[str]:
+    """The names of the functions that a formula calls."""
+    return {function.id for function in _called(node) if isinstance(function, ast.Name)}
+
+
+def _called(node: Node) -> list[Node]:
+    return [call.func for call in ast.walk(node) if isinstance(call, ast.Call)]
 
 
 def with_numbers(node: Node, known: Mapping[str, float]) -> str:

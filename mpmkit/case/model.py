@@ -438,11 +438,23 @@ class Case(Model):
         """Largest speed of a body at the start, m/s; of a field that of samples."""
         if "velocity" not in body.initial:
             return body.largest_speed
+        return float(np.linalg.norm(self.at_start(body, "velocity", self._samples(body)), axis=1).max())
+
+    def velocity_at_start(self, body: Body) -> np.ndarray:
+        """Mean velocity of a body at the start, m/s, ``(dim,)``; of a field that of samples in the body, of a
+        standing wave zero."""
+        if "velocity" not in body.initial:
+            uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * self.space_.dim
+            return np.array(uniform, dtype=float)
+        places = self._samples(body)
+        inside = places[body.shape.contains(places, self.space_)]
+        return self.at_start(body, "velocity", inside if len(inside) else places).mean(axis=0)
+
+    def _samples(self, body: Body) -> np.ndarray:
+        """Places in the box around a body, m, ``(n, dim)``."""
         lower, upper = body.shape.bounds(self.space_)
         parts = np.array(list(product(np.linspace(0, 1, SAMPLES), repeat=len(lower))))
-        return float(
-            np.linalg.norm(self.at_start(body, "velocity", lower + parts * (upper - lower)), axis=1).max()
-        )
+        return lower + parts * (upper - lower)
 
     def at_start(self, body: Body, field: str, position: np.ndarray) -> np.ndarray:
         """An initial field of a body at places, m, ``(n, dim)``: ``(n, *shape)``."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..contracts import BodyShape, Plugin
-from ..registry.audit.body_shapes import problem_of_shape, require_volume
+from ..registry.audit.body_shapes import problem_of_shape
 from ..registry.blame import blaming_plugins
 from ..spaces import Space
 
@@ -14,15 +14,13 @@ def shapes_in(plugin: Plugin) -> dict[str, BodyShape]:
     return {name: value for name, value in values if isinstance(value, BodyShape)}
 
 
-def check_shape(where: str, shape: BodyShape, space: Space, filled: bool = True) -> None:
-    """Raise ValueError with one sentence if a space cannot hold a shape, which may be filled with material.
+def check_shape(where: str, shape: BodyShape, space: Space) -> None:
+    """Raise ValueError with one sentence if a space cannot hold a shape.
 
     Raises:
         PluginStop: the shape is at fault.
     """
     with blaming_plugins([("body_shape", shape)]):
         problem = problem_of_shape(shape, space)
-        if problem is None and filled:
-            require_volume(shape, space)
     if problem is not None:
         raise ValueError(f"{where}: {problem}")

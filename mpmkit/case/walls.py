@@ -37,7 +37,7 @@ def check_walls(case: Case) -> None:
     for name, wall in case.walls.items():
         _check_name(name, case)
         for field, shape in shapes_in(wall.surface).items():
-            check_shape(f"walls.{name}.surface.{field}", shape, case.space_, filled=False)
+            check_shape(f"walls.{name}.surface.{field}", shape, case.space_)
         with blaming_plugins([("surface", wall.surface), ("contact", wall.contact)]):
             problem = audit.problem(wall.surface, case.space_)
             if problem is not None:

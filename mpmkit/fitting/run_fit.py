@@ -33,7 +33,7 @@ def fit(
     """Find the parameters of cases from measurements.
 
     The fit minimises χ² = (y − d)ᵀ C⁻¹ (y − d), first with coarse models and then with finer ones. Parallel
-    runs give the derivatives. The intervals come from the profile likelihood on a polynomial through the runs
+    runs give the derivatives. The intervals come from the profile likelihood on a surface through the runs
     of the finest model (docs/fit.md).
 
     Args:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..contracts.body_shape import BodyShape
 from ..errors import CaseError
+from ..registry.audit.body_shapes import size_of, volume_of
 from ..spaces import Space
 from .filled_boxes import filled_boxes
 from .lattice import Rows, rows
@@ -99,7 +100,7 @@ def sample(
         return _none(space)
     centre, side, kept, whole = filled_boxes(shape, space, axes, inside)
     volume = space.particle_volume(centre, side)
-    total, part = shape.volume(space), shape.part(low, high, space)
+    total, part = volume_of(shape, space), shape.part(low, high, space)
     raw, raw_kept = float(volume.sum()), float(volume[kept].sum())
     if raw_kept and abs(part / total - raw_kept / raw) <= _SAME_SHARE:
         _scale_to(total, volume, whole, np.ones(len(kept), dtype=bool))
@@ -166,7 +167,7 @@ def expected_count(
         CaseError: the space cannot hold the shape.
     """
     require_room(shape, space)
-    count = shape.size(space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
+    count = size_of(shape, space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
     if keep is not None:
         lower, upper = shape.bounds(space)
         left = np.minimum(upper, keep[1]) - np.maximum(lower, keep[0])

@@ -129,13 +129,12 @@ def _growth(simulation: Simulation, seconds: float) -> Growth:
 
 
 def _mean_seconds_of_sources(start: Trial, particles: float, growth: Growth) -> float:
-    """Mean seconds per step of a run that begins with few particles: those of the pilot, by its particles.
-
-    Without a pilot, which a short run does not need, those of the trial.
-    """
+    """Mean seconds per step of a run that begins with few particles: those of the pilot, and of the particles
+    that it has more; without a pilot, which cannot be had if it diverges, those of the trial."""
     if growth.of_the_case or not growth.mean_particles > 0:
         return growth.seconds_per_step if growth.of_the_case else start.step
-    return growth.seconds_per_step * max(1.0, particles * growth.particles / growth.mean_particles)
+    more = particles * growth.particles - growth.mean_particles
+    return growth.seconds_per_step + growth.seconds_per_particle * more
 
 
 def _mean_seconds(start: Trial, particles: int, growth: Growth, time_step: float) -> float:

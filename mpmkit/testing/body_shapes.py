@@ -7,7 +7,7 @@ import numpy as np
 from ..contracts import BodyShape
 from ..contracts.body_volume import size_between
 from ..errors import PluginFault
-from ..registry.audit.body_shapes import problem_of_shape, require_volume
+from ..registry.audit.body_shapes import problem_of_shape, size_of, volume_of
 from ..spaces import SPACES, Space
 from .violation import Violation, require, require_all, require_close, require_same
 
@@ -112,13 +112,12 @@ def contains(shape: BodyShape, space: Space) -> None:
 
 def volume(shape: BodyShape, space: Space) -> None:
     """Its volume is that which the distance encloses, and that of its parts together."""
-    require_volume(shape, space)
     lower, upper = shape.bounds(space)
-    solid, whole = shape.solid(space), shape.volume(space)
+    solid, whole = shape.solid(space), volume_of(shape, space)
     enclosed = size_between(solid.distance, lower, upper, space, around=space.radial)
     require_close(whole, enclosed, VOLUME * enclosed, lambda: "its volume", "m³")
     size = size_between(solid.distance, lower, upper, space)
-    require_close(shape.size(space), size, VOLUME * size, lambda: "its size")
+    require_close(size_of(shape, space), size, VOLUME * size, lambda: "its size")
     cut = lower + 0.37 * (upper - lower)
     for axis in range(space.dim):
         low, high = lower.copy(), upper.copy()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,8 @@ def problem_of_shape(shape: BodyShape, space: Space) -> str | None:
     """Why a space cannot hold a shape, in one sentence; None if it can.
 
     Raises:
-        PluginFault: it returned something else, or says that the space can hold it, but has no bounds or no
-            volume there.
+        PluginFault: it returned something else, or says that the space can hold it, but has no bounds
+            there.
     """
     found = shape.problem(space)
     if found is None:
@@ -27,12 +28,29 @@ def problem_of_shape(shape: BodyShape, space: Space) -> str | None:
     return found
 
 
-def require_volume(shape: BodyShape, space: Space) -> None:
-    """Raise PluginFault unless a shape that a space can hold has a volume there."""
-    for what in ("volume", "size"):
-        found = require_number(shape, what, getattr(shape, what)(space))
-        if not 0 <= found < math.inf:
-            raise PluginFault(shape, f"gave {found} as its {what}; it must be finite and not below 0")
+def volume_of(shape: BodyShape, space: Space) -> float:
+    """Volume of a shape that a space can hold, m³.
+
+    Raises:
+        PluginFault: it is not a finite number, or below 0.
+    """
+    return _sound(shape, "volume", shape.volume(space))
+
+
+def size_of(shape: BodyShape, space: Space) -> float:
+    """Size of a shape in the coordinates of a space that can hold it, m² or m³.
+
+    Raises:
+        PluginFault: it is not a finite number, or below 0.
+    """
+    return _sound(shape, "size", shape.size(space))
+
+
+def _sound(shape: BodyShape, what: str, value: Any) -> float:
+    found = require_number(shape, what, value)
+    if not 0 <= found < math.inf:
+        raise PluginFault(shape, f"gave {found} as its {what}; it must be finite and not below 0")
+    return found
 
 
 def _require_bounds(shape: BodyShape, space: Space) -> None:
