@@ -73,6 +73,13 @@ def test_the_bar_fits(monkeypatch, width, name):
     assert ("3.20 M particle-steps/s" in line) == (width >= (80 if name == "slump" else 100))
 
 
+@pytest.mark.parametrize(
+    ("speed", "words"), [(3.2e6, "3.20 M"), (1.5e5, "0.15 M"), (3742.6, "3,743"), (0.0, "0")]
+)
+def test_a_small_speed_is_not_shown_as_zero(speed, words):
+    assert f" {words} particle-steps/s " in display._lines(0.1, 1.0, speed, 10.0)[0]
+
+
 def test_drawing_is_said_and_the_pictures_named(tmp_path, capfd, monkeypatch):
     monkeypatch.setattr("mpmkit.report.write_report", lambda path: [path / "report" / "outline.png"])
     (tmp_path / "c.json").write_text(json.dumps(CASE | {"output": {"report": True}}))

@@ -1,4 +1,4 @@
-"""exp, log, powers and cube roots against NumPy in a longer format, in units in the last place (ulp)."""
+"""exp, expm1, log, powers and cube roots against NumPy in a longer format, in units of the last place."""
 
 from __future__ import annotations
 

@@ -79,6 +79,21 @@ def test_both_come_from_the_final_spread_and_t500():
         assert found[path].low < truth < found[path].high
 
 
+def test_parameters_at_the_top_of_a_laboratory_case_are_found(tmp_path):
+    measured = [FINAL, {"variable": "t500", "value": t500(150, 40), "relative_uncertainty": 0.03}]
+    parameters = {f"parameters.{path.split('.')[-1]}": PARAMETERS[path] for path in PARAMETERS}
+    fit = a_fit(measured, parameters, changes={"case": "cases/lab/slump_flow.json"})
+    result = mpmkit.fit(fit, tmp_path, executor=Pretend())
+    for (path, found), truth, unit in zip(result.parameters.items(), (150, 40), ("Pa", "Pa s"), strict=True):
+        assert found.value == pytest.approx(truth, rel=0.02)
+        assert found.unit == unit
+        assert path.startswith("parameters.")
+    (curve_found,) = result.curves
+    assert curve_found.stress == pytest.approx(150 + 40 * curve_found.rate, rel=0.03)
+    page = (tmp_path / "fit.html").read_text(encoding="utf-8")
+    assert "yield stress (Pa)" in page
+
+
 def test_a_prior_is_no_measurement():
     prior = {"value": 60, "deviation": 6}
     result = mpmkit.fit(
@@ -200,10 +215,10 @@ def test_a_run_that_a_guard_stops_turns_the_search_back(tmp_path):
 
 def test_a_narrow_domain_does_not_change_the_interval():
     """Runs whose material leaves the domain say that their spread is at least the last one."""
-    found = []
+    found, rough = [], FINAL | {"uncertainty": 0.05}
     for widest in (2.0, 0.62):
         executor = Pretend(widest=widest)
-        result = mpmkit.fit(a_fit([FINAL]), executor=executor)
+        result = mpmkit.fit(a_fit([rough]), executor=executor)
         stresses = [data["bodies"][0]["material"]["yield_stress"] for data in executor.ran]
         assert final_spread(min(stresses)) > 0.62  # at least one run leaves the narrow domain
         found.append(result.parameters[YIELD_STRESS])
@@ -211,7 +226,7 @@ def test_a_narrow_domain_does_not_change_the_interval():
             result.sentences
         )
     wide, narrow = found
-    assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.01)
+    assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.02)
 
 
 def test_a_first_run_that_a_guard_stops_is_told(tmp_path):

@@ -126,7 +126,7 @@ def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
     [
         ("tip", "front(1)", "front takes nothing"),
         ("tip", "depth(0.3)", "depth takes one place along x, from 0 to 0.2 m"),
-        ("tip", "depth('x')", "a name in quotes stands where a number must"),
+        ("tip", "depth('x')", "a number is needed, and not a name in quotes"),
         ("push", "force('lid', 'z')", "force takes the name of a wall ('z_min') and an axis ('x', 'z')"),
         ("gone", "outflow('drain')", "outflow takes the name of a sink (there is none), in quotes"),
         ("mass_out", "front()", "measurements has one called 'mass_out'"),
@@ -165,3 +165,23 @@ def test_the_case_of_a_run_has_numbers_only_and_is_the_same(tmp_path):
     assert "parameters" not in written
     again = mpmkit.parse_case(written)
     assert resolved(again) == resolved(given)
+
+
+def test_a_measurement_ends_a_run():
+    """The block flows out; the run ends at the first look, every 20 steps, at which it is 105 mm long."""
+    data = case(tip=("front()", "m"), grown=("tip - 0.1", "m"))
+    data["bodies"][0]["material"] = MATERIAL | {"yield_stress": 10}
+    data["grid"]["faces"]["x_min"] = "slip"
+    data["until"] = {"grown": {"at_least": 0.005}, "at_most": 1}
+    history = mpmkit.run(mpmkit.parse_case(data))
+    assert history.attrs["stopped_because"] == "condition"
+    assert int(history.attrs["steps"]) % 20 == 0
+    assert 0.105 <= float(history["tip"][-1]) < 0.107
+
+
+@pytest.mark.parametrize("condition", ["weight", "twice"])
+def test_a_mean_between_rows_cannot_end_a_run(condition):
+    data = case(weight=("force('z_min', 'z')", "N"), twice=("2 * weight", "N"))
+    data["until"] = {condition: {"at_least": 1}, "at_most": 1}
+    with pytest.raises(CaseError, match=f"until has the key '{condition}', a measurement with a mean over"):
+        mpmkit.parse_case(data)

@@ -9,6 +9,8 @@ from test_page import data_of, text_of
 from mpmkit.case import parse_case
 from mpmkit.output.netcdf import read_dataset
 from mpmkit.report.page import page_of
+from mpmkit.report.page.headline import figures
+from mpmkit.report.page.source import read_source
 from mpmkit.running.runner import run
 
 MORTAR = {
@@ -55,13 +57,21 @@ def test_the_headline_says_how_much_came_in_and_from_where(directory):
     assert "left through the sink drain (box)" in text
 
 
-def test_the_masses_are_drawn_against_time(directory):
+def test_a_scene_that_begins_empty_has_no_slump(directory):
+    names = [name for name, _, _ in figures(read_source(directory))]
+    assert "Slump" not in names
+    assert "Height" in names
+
+
+def test_masses_and_rates_are_drawn_against_time(directory):
     history = read_dataset(directory / "history.nc")
-    chart = data_of(page_of(directory))["balance"]["charts"]["passed"]
-    assert chart["unit"] == "kg"
-    assert [curve["label"] for curve in chart["curves"]] == ["in through tap", "out through drain"]
-    np.testing.assert_allclose(chart["curves"][0]["values"], history.mass_in, rtol=1e-6)
-    np.testing.assert_allclose(chart["curves"][1]["values"], history.mass_out, rtol=1e-6)
+    charts = {chart["title"]: chart for chart in data_of(page_of(directory))["measured"]["charts"].values()}
+    came = charts["Mass that has come in through the source: tap"]
+    assert came["unit"] == "kg"
+    np.testing.assert_allclose(came["curves"][0]["values"], history.mass_in, rtol=1e-6)
+    left = charts["Mass that has left through the sink: drain"]
+    np.testing.assert_allclose(left["curves"][0]["values"], history.mass_out, rtol=1e-6)
+    assert charts["Rate at which mass comes in: tap"]["unit"] == "kg/s"
 
 
 def test_the_material_of_a_source_has_its_flow_curve_and_the_shear_rates_that_it_reached(directory):

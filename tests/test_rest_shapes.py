@@ -4,7 +4,15 @@ import math
 
 import pytest
 
-from mpmkit.rheology.deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
+from mpmkit.rheology.deposits import (
+    BIAXIAL,
+    PLANE,
+    box_depths,
+    channel_length,
+    cone_spread,
+    drop_spread,
+    slope_length,
+)
 from mpmkit.rheology.laboratory import FORMULAS
 from mpmkit.rheology.rotation import cylinder_torque
 
@@ -109,3 +117,16 @@ def test_torque_at_rest_is_the_start_of_flow_and_grows_with_the_speed():
     assert cylinder_torque(0.05, 0.1, 1e-12, 100, 1) == pytest.approx(start, rel=1e-5)
     # the table of the cup whose fluid is sheared to 87 mm only: 0.303 N m at 0.05 rev/s
     assert cylinder_torque(0.0635, 0.127, 0.1 * math.pi, 50, 20) == pytest.approx(0.303, abs=6e-4)
+
+
+@pytest.mark.parametrize("radius", [0.001, 0.05, 0.5])
+def test_drops_of_a_table_spend_their_energy_on_stretching_and_on_the_floor(radius):
+    """A cylinder 60 mm high that drops flatten to 30 mm; its work is summed here in steps of its height."""
+    low, first, sink, steps = 0.03, 0.06, 0.01, 4000
+    volume, work, step = math.pi * radius**2 * low, 0.0, (first - low) / steps
+    for k in range(steps):
+        height = low + (k + 0.5) * step
+        wide = math.sqrt(volume / (math.pi * height))
+        work += step * (math.sqrt(3) * math.pi * wide**2 + math.pi * wide**3 / (3 * height))
+    fallen = sink * work / volume - (first - low) / 2
+    assert drop_spread(volume, sink, first / 2, fallen) == pytest.approx(2 * radius, rel=1e-5)

@@ -18,6 +18,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import xarray
 from common import DOCS
 
 from mpmkit.case import load_case, parse_case
@@ -43,9 +44,13 @@ SHARED = {
     "slump_flow": ["t500_from_lift", "at_rest_since"],
     "slump_test": ["final_height"],
     "standing_layer": ["final_spread"],
+    "barrier": ["largest_force", "at_rest_since"],
 }
 """Figures of the summary that a page shows beside what the case measures."""
+LARGEST = {"barrier": {"largest_force": "force_on_barrier"}}
+"""Figures that are the largest value of a measurement in the history, and the name of that measurement."""
 EXPLAINED = {
+    "largest_force": "largest horizontal force on the barrier, as the flow arrives",
     "t500_from_lift": "t500: time to 500 mm from the start of the lift",
     "at_rest_since": "time from which the material is at rest",
     "final_height": "height at the end",
@@ -96,6 +101,10 @@ def recorded() -> dict[str, dict]:
 def record(name: str, variant: str) -> None:
     """Take over from a summary what pages show."""
     summary = json.loads((RUNS / f"{name}{variant}" / "summary.json").read_text(encoding="utf-8"))
+    for key, measured in LARGEST.get(name, {}).items():
+        with xarray.open_dataset(RUNS / f"{name}{variant}" / "history.nc") as history:
+            summary[key] = float(history[measured].max())
+        summary["units"][key] = summary["units"][measured]
     units = {key: summary["units"][key] for key in reported(name)}
     found = {key: summary[key] for key in (*reported(name), *STATE)}
     work = round(summary["particle_steps_per_second"] * summary["wall_time"])

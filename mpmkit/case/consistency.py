@@ -22,6 +22,7 @@ from .ending import Until
 from .forces import check_forces, check_symmetry_of_forces, force_columns
 from .initial_fields import check_initial_fields
 from .measurement_rules import check_measurements
+from .measurements import MEANS, means
 from .model import Case, Material
 from .shapes import check_shape
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
@@ -74,13 +75,13 @@ def check(case: Case) -> None:
     check_inflows(case)
     _check_sinks(case)
     _check_measured(case)
+    check_measurements(case)
     _check_until(case)
     check_walls(case)
     _check_time_step(case)
     for field in ("history_interval", "frame_interval"):
         _check_interval(f"output.{field}", getattr(case.output, field), case.end)
     _check_particle_history(case)
-    check_measurements(case)
 
 
 def _check_sinks(case: Case) -> None:
@@ -124,7 +125,14 @@ def _check_until(case: Case) -> None:
         *diagnostic_columns(case),
     ]
     scalars = [column.name for column in columns if not column.component and not column.dimension]
+    scalars += case.measurements
+    passing = means(case.measurements)
     for name in case.until.variables if isinstance(case.until, Until) else ():
+        if name in passing:
+            raise ValueError(
+                f"until has the key '{name}', a measurement with a mean over the time between two rows of "
+                f"the history ({', '.join(MEANS)}); it cannot end a run between them"
+            )
         if name not in scalars:
             near = nearest(name, ["at_most", "rest", *scalars])
             hint = (

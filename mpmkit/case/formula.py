@@ -47,6 +47,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": min,
     "max": max,
     "sqrt": _root,
+    "cbrt": math.cbrt,
     "ceil": _ceil,  # for lengths in cells: a domain is a whole number of cells
     "sin": math.sin,
     "cos": math.cos,
@@ -104,21 +105,30 @@ def evaluate(
             values = [_argument(argument, names, functions) for argument in arguments]
             if name in FUNCTIONS:
                 if any(isinstance(value, str) for value in values):
-                    raise ValueError("a name in quotes stands where a number must")
+                    raise ValueError("a number is needed, and not a name in quotes")
                 least = COUNT.get(name, 1)
                 if len(values) < least or (len(values) > 1 and name not in COUNT):
                     raise ValueError(f"{name} takes {'two or more numbers' if least > 1 else 'one number'}")
             return _number(functions[name], *values)
     raise ValueError(
-        f"'{ast.unparse(node)}' cannot stand in a formula; it must be made of numbers, names, + - * / ( ) "
+        f"'{ast.unparse(node)}' is not allowed in a formula; it must be made of numbers, names, + - * / ( ) "
         f"and {', '.join(functions)}"
     )
 
 
 def names_in(node: Node) -> set[str]:
     """The names that a formula uses, without those of functions."""
-    called = {id(call.func) for call in ast.walk(node) if isinstance(call, ast.Call)}
+    called = {id(function) for function in _called(node)}
     return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and id(name) not in called}
+
+
+def functions_in(node: Node) -> set[str]:
+    """The names of the functions that a formula calls."""
+    return {function.id for function in _called(node) if isinstance(function, ast.Name)}
+
+
+def _called(node: Node) -> list[Node]:
+    return [call.func for call in ast.walk(node) if isinstance(call, ast.Call)]
 
 
 def with_numbers(node: Node, known: Mapping[str, float]) -> str:
@@ -147,7 +157,7 @@ def _number(function: Callable[..., float], *values: Any) -> float:
     except ZeroDivisionError:
         raise NoNumber("it divides by zero") from None
     except TypeError:  # a name in quotes where a number must stand
-        raise ValueError("a name in quotes stands where a number must") from None
+        raise ValueError("a number is needed, and not a name in quotes") from None
     except OverflowError:
         raise NoNumber("it is too large for a number") from None
     if math.isinf(found):

@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping
 from pydantic import Field
 
 from .base import Model
-from .formula import FUNCTIONS, NoNumber, evaluate, parse
+from .formula import FUNCTIONS, NoNumber, evaluate, functions_in, names_in, parse
 
 SELF = "measurements"
 NAMES = (
@@ -80,11 +80,23 @@ Functions = Mapping[str, Callable[..., float]]
 
 LOOKS = ("depth", "width", "front", "force", "torque", "outflow")
 """Functions that look at the scene."""
+MEANS = ("force", "torque", "outflow")
+"""Those that are means since the last row of the history, so that they have no value between rows."""
 
 
 def functions(looks: object) -> Functions:
     """The functions of measurements: those of arithmetic, and ``LOOKS``, which are methods of ``looks``."""
     return FUNCTIONS | {name: getattr(looks, name) for name in LOOKS}
+
+
+def means(measurements: Mapping[str, Measurement]) -> set[str]:
+    """The measurements that use a mean since the last row, themselves or through one above them."""
+    found: set[str] = set()
+    for name, measurement in measurements.items():
+        formula = parse(measurement.formula)
+        if functions_in(formula) & {*MEANS} or names_in(formula) & found:
+            found.add(name)
+    return found
 
 
 def measured(

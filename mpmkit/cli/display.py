@@ -41,9 +41,10 @@ FIGURES = (
     ("particles", "particles", 1, "", 0),
     ("steps", "steps", 1, "", 0),
     ("wall_time", "wall time", 1, " s", 1),
-    ("particle_steps_per_second", "particle-steps a second", 1e-6, " million", 2),
 )
 """Entries of the summary: key, label, scale, unit and digits."""
+PARTICLE_STEPS = "particle-steps per second"
+MILLION = 1e6
 
 
 class _Screen(Console):
@@ -205,13 +206,18 @@ def _lines(
     at_most = "at most " if ends_earlier else ""
     left = f"{at_most}{duration(seconds_left)} left"
     now = f"t = {time:.4g} of {at_most}{until:g} s"
-    return f"{now} · {speed / 1e6:.2f} M particle-steps/s · {left}", f"{now} · {left}", left
+    return f"{now} · {_speed(speed, 'M')} particle-steps/s · {left}", f"{now} · {left}", left
+
+
+def _speed(speed: float, million: str) -> str:
+    """A number of particle-steps per second, in millions if it is not small."""
+    return f"{speed / MILLION:.2f} {million}" if speed >= MILLION / 10 else f"{speed:,.0f}"
 
 
 def show_summary(directory: Path) -> None:
     """Print the numbers of ``summary.json`` and the run directory on standard output."""
     summary = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
-    width = max(len(label) for _, label, *_ in FIGURES)
+    width = max(len(PARTICLE_STEPS), *(len(label) for _, label, *_ in FIGURES))
     shown = [figure for figure in FIGURES if figure[0] != "t500_from_lift" or lifted_later(summary)]
     for key, label, scale, unit, digits in shown:
         value = summary[key]
@@ -219,6 +225,8 @@ def show_summary(directory: Path) -> None:
         if key == "final_spread" and (state := state_at_end(summary)) is not None:
             figure += f", {state}"
         echo(f"{label:<{width}}  {figure}")
+    speed = summary["particle_steps_per_second"]
+    echo(f"{PARTICLE_STEPS:<{width}}  {'–' if speed is None else _speed(speed, 'million')}")
     for name in [name for name in summary["units"] if name not in UNITS]:
         unit = summary["units"][name].removeprefix("1")
         value = summary[name]

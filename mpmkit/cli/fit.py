@@ -53,12 +53,12 @@ def command(fit: str, how: ManyRuns) -> None:
     if how.quiet:
         return
     for found in result.parameters.values():
-        known = "" if found.identifiable else ", not known from these measurements"
         unit = f" {found.unit}" if found.unit else ""
-        echo(
-            f"{found.path} = {found.value:.4g}{unit}, from {found.low:.4g} to {found.high:.4g} "
-            f"at {100 * found.level:g} %{known}"
-        )
+        interval = f"from {found.low:.4g} to {found.high:.4g}{unit} at {100 * found.level:g} %"
+        if found.identifiable:
+            echo(f"{found.path} = {found.value:.4g}{unit}, {interval}")
+        else:
+            echo(f"{found.path} is not known from these measurements: {interval}")
     for sentence in result.sentences:
         echo(sentence)
     echo(f"{result.runs} runs; results in {directory}; open {directory / PAGE} in a browser")

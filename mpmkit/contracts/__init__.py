@@ -1,4 +1,4 @@
-"""What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
+"""The interface for authors of plug-ins: one contract for each kind, and the marker of the hooks."""
 
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity

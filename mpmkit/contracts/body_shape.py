@@ -1,4 +1,4 @@
-"""Contract of a body shape: a solid that a body fills, and that a wall surrounds or is."""
+"""Contract of a body shape: a solid that a body fills, or from which a wall is made."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ from .body_volume import size_between
 from .solid import Found, Shell, Solid
 
 STEP = 1e-6
-"""Step of the differences that make a gradient, relative to the largest extent: the square root of rounding
-is less, and a surface is flat over it."""
+"""Step of the central differences of a gradient, relative to the largest extent.
+
+It is larger than the square root of the rounding error, and a surface is flat over this length.
+"""
 
 
 class BodyShape(Plugin):
-    """A solid: it serves as body, as mould and as obstacle.
+    """A solid that can be a body, a mould or an obstacle.
 
     A plane-strain scene is its cross-section, 1 m thick. An axisymmetric scene turns its half cross-section,
     r ≥ 0, about r = 0. Points are in the coordinates of the case file; k of them at once.
 
-    ``bounds`` and ``signed_distance`` are all that a new shape needs. What else there is has a default that
-    is computed from these two; a shape that knows it exactly overrides it.
+    A new shape needs only ``bounds`` and ``signed_distance``. All other methods have a default that is
+    computed from these two; a shape that can compute a result exactly overrides the method.
 
     In a case it stands at ``bodies.<n>.shape`` and at ``walls.<name>.surface.shape``, as
     ``{"kind": name, …parameters}``.
@@ -44,12 +46,11 @@ class BodyShape(Plugin):
     files: ClassVar[tuple[str, ...]] = ()
     """Parameters that name a file from which it is read."""
     shell_needs_an_end: ClassVar[bool] = False
-    """Whether a shell with all its ``ends`` open would be no wall."""
+    """Whether nothing is left of a shell if all its ``ends`` are open."""
 
     def problem(self, space: Space) -> str | None:
-        """Why a space cannot hold it, in one sentence that names the parameter; None if it can.
-
-        It is asked for before any other method.
+        """Why it cannot be used in a space, in one sentence that names the parameter; None if it can. It is
+        called before any other method.
         """
         return None
 
@@ -61,8 +62,8 @@ class BodyShape(Plugin):
     def signed_distance(self, x: np.ndarray, space: Space) -> np.ndarray:
         """Distance of points, m, ``(k, dim)``, from its surface, m, ``(k,)``: above 0 outside.
 
-        It must be the distance near the surface; farther away its size may be less, never more. In an
-        axisymmetric scene r ≥ 0, and r = 0 is no surface.
+        It must be exact near the surface; farther away its magnitude may be smaller than the distance, but
+        never larger. In an axisymmetric scene r ≥ 0, and the axis r = 0 is not a surface.
         """
 
     def within(self, x: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
@@ -93,7 +94,7 @@ class BodyShape(Plugin):
         return DistanceSolid(self, space)
 
     def inner_edges(self, inside: bool) -> str | None:
-        """What it is called in a warning if a wall made of it has inner edges and no ``parts``.
+        """Its name in the warning about a wall with inner edges and no ``parts``.
 
         ``inside`` says that the material is inside of it.
         """
@@ -108,7 +109,9 @@ class BodyShape(Plugin):
         return ()
 
     def shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
-        """A shell of a thickness, m, outwards, whose inner surface is its own; open at some of ``ends``."""
+        """A shell of a thickness, m, around it, whose inner surface is the surface of the shape; open at some
+        of ``ends``.
+        """
         return Shell(self.solid(space), thickness)
 
     def middle(self, space: Space) -> tuple[float, float] | None:
@@ -124,7 +127,7 @@ class BodyShape(Plugin):
         """A file name made from that content; it does not depend on the place of the file."""
         raise NotImplementedError(f"{type(self).__name__} names no file in {field}")
 
-    # What the framework asks for, made of the above.
+    # For the framework, computed from the methods above.
 
     def contains(self, x: np.ndarray, space: Space) -> np.ndarray:
         """Whether each of points, m, ``(k, dim)``, is inside or on the surface; bool, ``(k,)``."""

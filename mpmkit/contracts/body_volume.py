@@ -1,4 +1,4 @@
-"""Size of a solid of which only the signed distance is known."""
+"""Volume of a solid, computed from its signed distance."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .solid import Found
 COARSE = 8
 """Cells along each axis at the start."""
 MOST = 60_000
-"""Cells at the surface up to which they are halved."""
+"""Cells at the surface are halved until there are this many."""
 COLUMNS = 4
 """Columns across each axis into which a cell at the surface is divided."""
 

@@ -111,8 +111,15 @@ def _measured(where: str, measurement: Measurement, case: Case) -> Measured:
 def predicted(
     measured: list[Measured], summary: Mapping[str, Any], history: xarray.Dataset, end: float
 ) -> Predicted:
-    """Predicted values of one run for the measurements of its test; ``end``, s, is its latest end."""
+    """Predicted values of one run for the measurements of its test; ``end``, s, is its latest end.
+
+    Raises:
+        CaseError: the run has no such value.
+    """
     found = [one.quantity.of_run(summary, history, end) for one in measured]
+    for one, (value, _) in zip(measured, found, strict=True):
+        if not np.isfinite(value).all():
+            raise CaseError(f"{one.where}: a run gave no {one.quantity.words}, so that it cannot be fitted")
     return Predicted(np.concatenate([y for y, _ in found]), np.concatenate([s for _, s in found]))
 
 

@@ -14,10 +14,10 @@ from .surrogate import Surrogate
 PLACES = 41
 """Places along a coordinate at which a profile is computed; as many more are near the best value."""
 SMALL = 1e-4
-"""Step of a coordinate for finite differences of the polynomial."""
+"""Step of a coordinate for finite differences of the surface."""
 ITERATIONS = 60
 CLOSE = 1e-7
-"""A search on the polynomial ends when the coordinates change by less."""
+"""A search on the surface ends when the coordinates change by less."""
 SEED, TRIED = 5, 400
 """Points of the box at which the shapes of the residuals are collected."""
 NEGLIGIBLE = 1e-9

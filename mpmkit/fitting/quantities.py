@@ -97,6 +97,8 @@ class Quantity:
             return np.array([time]), np.array([scale])
         if self.times is None:
             value = summary.get(self.variable)
+            if value is None and self.variable == "at_rest_since":
+                value = end  # it still moved
             value = math.nan if value is None else float(value)
             return np.array([value]), np.array([abs(value)])
         values = np.interp(self.times, history.time.values, self._series(history, self.variable))

@@ -33,22 +33,22 @@ def fit(
     """Find the parameters of cases from measurements.
 
     The fit minimises χ² = (y − d)ᵀ C⁻¹ (y − d), first with coarse models and then with finer ones. Parallel
-    runs give the derivatives. The intervals come from the profile likelihood on a polynomial through the runs
+    runs give the derivatives. The intervals come from the profile likelihood on a surface through the runs
     of the finest model (docs/fit.md).
 
     Args:
         fit: a fit file, its content, or a ``Fit``.
         out: directory for results and runs; a fit continues from the runs there. Default: nothing is written.
-        overwrite: whether the result of another fit in ``out`` may be replaced; its runs are kept in any
-        case. threads: of each run; default: as the fit says.
+        overwrite: whether the result of another fit in ``out`` may be replaced; its runs are always kept.
+        threads: of each run; default: as the fit says.
         workers: runs at once on this machine; default: as many as its cores hold of ``threads``.
         executor: of ``concurrent.futures``, runs them instead of processes of this machine.
         listen: called with each run that has ended, and its result.
 
     Returns:
         A ``FitResult``: ``parameters`` by path with ``value``, ``low``, ``high``, ``level`` and
-        ``identifiable``,
-        ``correlation``, ``sentences``, ``further``, ``evidence`` (laws compared) and ``dataset`` (all runs).
+        ``identifiable``, ``correlation``, ``sentences``, ``further``, ``evidence`` (laws compared) and
+        ``dataset`` (all runs).
 
     Raises:
         CaseError: bad input, a measurement that no run can give, or SciPy is not installed.

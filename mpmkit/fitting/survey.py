@@ -20,6 +20,8 @@ AGREES = 0.5
 """Allowed error of the surrogate at the ends of an interval, relative to the critical Δχ²."""
 WIDE = 0.12
 """If the standard deviation of a coordinate is larger, runs cover it from bound to bound."""
+CLOSE = 0.05
+"""A run is as good as one at another place if it is closer, relative to the width of the intervals."""
 FAR = 1.5
 """Distance of the first runs from the best point, in standard deviations."""
 
@@ -79,7 +81,7 @@ class Surveyor:
         for _ in range(0 if spent else ROUNDS):
             ends = [end for interval in found.intervals for end in (interval.low_at, interval.high_at)]
             try:
-                points = self._run([found.best, *ends])
+                points = self._run([self._nearest(found, found.best), *ends])
             except Spent:
                 return self._found(found.best, agrees=False, spent=True)
             if all(self._agrees(found, point) for point in points):
@@ -91,6 +93,13 @@ class Surveyor:
         return self._runs.at(
             self._stage, [self._coordinates.values(np.clip(place, 0, 1)) for place in places]
         )
+
+    def _nearest(self, found: Survey, place: np.ndarray) -> np.ndarray:
+        """The place of a finished run that is as good as at this place; the place itself if there is none."""
+        width = np.array([interval.high - interval.low for interval in found.intervals])
+        known = [self._u(p) for p in self._runs.points if p.stage == self._stage and p.predicted is not None]
+        near = min(known, key=lambda u: float(np.max(np.abs(u - place) / width)))
+        return near if np.all(np.abs(near - place) <= CLOSE * width) else place
 
     def _u(self, point: Point) -> np.ndarray:
         return np.array(

@@ -37,7 +37,7 @@ MANTISSA, BIAS = 52, 1023
 FRACTION = (1 << MANTISSA) - 1
 ONE = BIAS << MANTISSA
 CUBE_START = 0x553E_E072_8F5C_28F6
-"""The bits of x^(-1/3) and a third of the bits of x, added up; so chosen that the start of ``cube_root`` has
+"""The bits of x^(-1/3) and a third of the bits of x, added up: chosen so that the start of ``cube_root`` has
 the same largest error to both sides."""
 
 
@@ -148,8 +148,8 @@ def log(x):
 def cube_root(x):
     """x^(1/3), of x from zero to 1e300, to a unit or two in the last place.
 
-    Newton's method for x^(-1/3) needs no division. A third of the bits, as a sum of shifts, is a start with
-    an error of 3.7 % at most; each step squares the error and doubles it.
+    Newton's method for x^(-1/3) needs no division. The start is a third of the bits, as a sum of shifts, and
+    wrong by 3.7 % at most; each step squares the error and doubles it.
     """
     i = bits(x)
     third = (i >> 2) + (i >> 4)

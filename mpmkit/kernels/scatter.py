@@ -19,6 +19,7 @@ from .vectors import (
     lane,
     load,
     load_first,
+    load_twice,
     multiply,
     pack,
     picker,
@@ -27,6 +28,7 @@ from .vectors import (
     scale,
     spread,
     store,
+    store_half,
     zero,
 )
 
@@ -266,3 +268,40 @@ def scatter_pairs(dim: int, support: int):
                                     store(pairs, at, plus(load(pairs, at), w3, of_plane))
 
     return scatter_pairs
+
+
+@cache
+def scatter_scalar(dim: int, support: int):
+    """The kernel that adds Σ N amount of the particles to ``sums (nodes,)``.
+
+    A row is four doubles. As in ``scatter_pairs``, those behind the particle's nodes add nothing.
+    """
+
+    @inline()
+    def add_row(sums, at, weight, row):
+        store_half(sums, at, plus(load_twice(sums, at), weight, row))
+
+    @kernel()
+    def scatter_scalar(sums, strides, lower, tasks, base, weight, amount):
+        groups, last = tasks.shape[0], dim - 1
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
+        for colour in range(tasks.shape[1]):
+            for task in prange(tasks.shape[2] - 1):
+                for g in range(groups):
+                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
+                        first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
+                        w2 = weight[p, last, 2] if support > 2 else 0.0
+                        w3 = weight[p, last, 3] if support > 3 else 0.0
+                        row = pack(weight[p, last, 0], weight[p, last, 1], w2, w3, 0.0, 0.0, 0.0, 0.0)
+                        row = scale(amount[p], row)
+                        if dim == 2:
+                            for a in range(support):
+                                add_row(sums, first + a * plane, weight[p, 0, a], row)
+                        else:
+                            first += (base[p, 1] - low1) * line
+                            for a in range(support):
+                                of_plane = scale(weight[p, 0, a], row)
+                                for b in range(support):
+                                    add_row(sums, first + a * plane + b * line, weight[p, 1, b], of_plane)
+
+    return scatter_scalar

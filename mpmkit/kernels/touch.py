@@ -46,7 +46,7 @@ def mark(dim: int, support: int):
         sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins,
         p, a, wall, k,
     ):  # fmt: skip
-        """Add what a particle gives to the nodes of a wall, which are its nodes k along axis a."""
+        """The share of a particle in the nodes of the wall that is k nodes from its first along axis a."""
         V = volume[p] * weight[p, a, k]
         if V == 0.0:
             return

@@ -117,6 +117,18 @@ def store(typing, array, i, vector):
 
 
 @intrinsic
+def store_half(typing, array, i, vector):
+    """Write the first four doubles of a vector to a contiguous array, from its flat index i on."""
+
+    def generate(context, builder, signature, arguments):
+        half = builder.shuffle_vector(arguments[2], arguments[2], _mask(range(LANES // 2)))
+        builder.store(half, _pointer(context, builder, signature, arguments, _HALF), align=8)
+        return context.get_dummy_value()
+
+    return types.none(array, i, vector), generate
+
+
+@intrinsic
 def zero(typing):
     """A vector of zeros."""
 
@@ -227,6 +239,10 @@ if numba.config.DISABLE_JIT:
 
     def store(array, i, vector):
         there = array.reshape(-1)[i : i + LANES]
+        there[:] = vector[: len(there)]
+
+    def store_half(array, i, vector):
+        there = array.reshape(-1)[i : i + LANES // 2]
         there[:] = vector[: len(there)]
 
     def zero():

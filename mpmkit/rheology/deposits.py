@@ -110,6 +110,35 @@ def box_depths(
     return back, end
 
 
+def drop_spread(volume: float, sink: float, centre: float, fallen: float) -> float:
+    """Diameter, m, of a cylinder into which drops of a table flatten a body without viscosity.
+
+    Each drop gives the body the energy ρ g V for each metre of its height. As the height H of a cylinder of
+    the volume V = π R² H falls by dH, its stretching takes √3 τ0 π R² dH, and the floor, on which it slides
+    with r |dH|/(2H) under τ0, π τ0 R³ dH/(3H). With H0 = 2 ``centre`` at first,
+
+        fallen + centre - H/2 = s [√3 ln(H0/H) + 2/9 √(V/π) (H^(-3/2) - H0^(-3/2))]
+
+    Viscosity takes a part of the energy, and so does the elastic rebound: a body spreads less.
+
+    Args:
+        volume: V, m³.
+        sink: s = τ0/(ρ g), m.
+        centre: height of the centre of mass at first, m.
+        fallen: sum of the heights of all drops, m.
+    """
+    first = 2 * centre
+
+    def left(height: float) -> float:
+        """Energy that is left, over ρ g V, m; it falls with the height."""
+        stretched = math.sqrt(3) * math.log(first / height)
+        slid = 2 / 9 * math.sqrt(volume / math.pi) * (height**-1.5 - first**-1.5)
+        return fallen + centre - height / 2 - sink * (stretched + slid)
+
+    height = _bisect(left, 1e-3 * first, first)
+    return 2 * math.sqrt(volume / (math.pi * height))
+
+
 def slope_length(area: float, sink: float, angle: float, stretching: float = 0.0) -> float:
     """Length, m, of the plane deposit on a slope below a wall at its upper end.
 

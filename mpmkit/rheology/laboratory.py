@@ -8,7 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .deposits import BIAXIAL, PLANE, box_depths, channel_length, cone_spread, slope_length
+from .deposits import (
+    BIAXIAL,
+    PLANE,
+    box_depths,
+    channel_length,
+    cone_spread,
+    drop_spread,
+    slope_length,
+)
 from .funnels import Sections, flow_time, rectangles
 from .rotation import coaxial_torque, cylinder_torque
 from .tubes import tube_gradient
@@ -42,9 +50,19 @@ def sink(p: Given) -> float:
 
 
 def _cone(p: Given, stretching: float) -> float:
+    return cone_spread(_cone_volume(p), sink(p), stretching)
+
+
+def _cone_volume(p: Given) -> float:
     bottom, top = p["bottom_radius"], p["top_radius"]
-    volume = math.pi * p["mould_height"] / 3 * (bottom**2 + bottom * top + top**2)
-    return cone_spread(volume, sink(p), stretching)
+    return math.pi * p["mould_height"] / 3 * (bottom**2 + bottom * top + top**2)
+
+
+def _flow_table(p: Given) -> float:
+    bottom, top = p["bottom_radius"], p["top_radius"]
+    centre = (bottom**2 + 2 * bottom * top + 3 * top**2) / (4 * (bottom**2 + bottom * top + top**2))
+    fallen = p["drops"] * p["drop_height"]
+    return drop_spread(_cone_volume(p), sink(p), centre * p["mould_height"], fallen)
 
 
 def _channel(p: Given, stretching: float) -> float:
@@ -180,6 +198,9 @@ FORMULAS: dict[str, list[Formula]] = {
     "squeeze_flow": [
         Formula("plate_force", "friction and stretching, 2π τ0 R³/(3h) + √3 π τ0 R²", _squeeze, 0.1),
         Formula("plate_force", "friction on the plates, 2π τ0 R³/(3h)", lambda p: _friction(p)[0], None),
+    ],
+    "flow_table": [
+        Formula("flow_value", "at most: the yield stress takes all energy of the drops", _flow_table, None)
     ],
     "v_funnel": [
         Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",

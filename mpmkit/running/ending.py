@@ -8,6 +8,7 @@ from ..case.ending import Until
 from ..output.summary import AT_REST, CONDITION
 from ..solver.simulation import Simulation
 from ..solver.stateful import State, plain_state, restore_plain
+from .measuring import momentary
 from .milestones import LOOKS, Milestones, centre_of_mass
 
 KEPT = 2e-4
@@ -60,7 +61,7 @@ class Ending:
             return
         if self._until.rest and self._at_rest():
             self.ended = AT_REST
-        values = simulation.measured() if self._until.variables and not self.ended else {}
+        values = momentary(simulation) if self._until.variables and not self.ended else {}
         for name, bounds in self._until.variables.items():
             if not self.ended and bounds.hold(float(values[name])):
                 self.ended, self.why = CONDITION, f"{name} is {float(values[name]):.6g}, {bounds.words}"

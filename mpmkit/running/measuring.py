@@ -8,17 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from ..case.measurements import NAMES, functions, measured
+from ..case.measurements import NAMES, Measurement, functions, means, measured
 from ..kernels.extents import extents
 from ..solver.simulation import Simulation
 
 
 def measurements(simulation: Simulation, row: Mapping[str, Any]) -> dict[str, float]:
     """The measurements of a case for a row of its history, which is given without them."""
-    if not simulation.case.measurements:
+    return _measured(simulation, row, simulation.case.measurements)
+
+
+def momentary(simulation: Simulation) -> dict[str, Any]:
+    """The scalars of the history at the present step, with the measurements that need no row before it."""
+    values, every = simulation.measured(), simulation.case.measurements
+    passing = means(every)
+    return values | _measured(simulation, values, {key: every[key] for key in every if key not in passing})
+
+
+def _measured(
+    simulation: Simulation, row: Mapping[str, Any], which: Mapping[str, Measurement]
+) -> dict[str, float]:
+    if not which:
         return {}
     names = {name: float(row[name]) for name in NAMES if name in row} | {"time": simulation.time}
-    return measured(simulation.case.measurements, names, functions(_Look(simulation, row)))
+    return measured(which, names, functions(_Look(simulation, row)))
 
 
 class _Look:

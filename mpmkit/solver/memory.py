@@ -108,12 +108,16 @@ def _of_forces(case: Case) -> int:
 
 
 def _redistributed(case: Case) -> int:
-    """Temporary bytes per particle of a redistribution: splines of two lattices, its shift."""
+    """Temporary bytes per particle of a redistribution: places of splines, its shift, parts of boxes.
+
+    The weights of the splines lie in the tables of the step, if these are large enough.
+    """
     if not redistributes(case.scheme.redistribution):
         return 0
     dim = case.space_.dim
-    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * dim * SUPPORT, 2 * dim, 4
-    return INDEX * bases + DOUBLE * (splines + shift_and_slope + numbers)
+    splines = 2 * dim * SUPPORT if case.scheme.shape.support < SUPPORT else 0
+    bases, shift, parts, numbers = 2 * dim, dim, 2 * dim, 4
+    return INDEX * bases + DOUBLE * (splines + shift + parts + numbers)
 
 
 def _doubles_per_node(case: Case) -> float:

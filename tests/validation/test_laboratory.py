@@ -122,3 +122,38 @@ def test_the_flow_time_of_a_v_funnel_is_that_of_its_finest_run(validate):
         measured("v_funnel", "flow_time") / fine,
         close_to(1, rel=0.25),
     )
+
+
+@pytest.mark.slow
+def test_a_flow_table_spreads_mortar_with_a_part_of_the_energy_of_its_drops(validate):
+    """A table that stops gives up to m g h to the mortar and keeps the rest; a rigid body would take nothing.
+
+    Mortar without viscosity that took all of it would spread farthest.
+    """
+    history, p = run("flow_table"), given("flow_table")
+    work = float(history["force_work"].values[-1, 0]) / float(history["total_mass"].values[-1])
+    energy = G * p["drops"] * p["drop_height"]
+    validate("Flow table: work on the mortar over m g h of all drops", work / energy, below(1.0))
+    farthest = FORMULAS["flow_table"][0].value(p)
+    found = measured("flow_table", "flow_value")
+    validate("Flow table: spread over the largest that energy allows", found / farthest, below(1.0))
+    validate("Flow table: spread over the foot of the mould", found / (2 * p["bottom_radius"]), above(1.2))
+
+
+@pytest.mark.slow
+def test_a_frictionless_barrier_is_pushed_along_its_normal(validate):
+    """The face leans back by 30°: for each newton along the flow cot 60° of it pushes the barrier down."""
+    down = -measured("barrier", "upward_force") / measured("barrier", "force_on_barrier")
+    lean = math.radians(given("barrier")["inclination"])
+    validate("Barrier: downward over horizontal force", down, close_to(1 / math.tan(lean), rel=0.01))
+
+
+@pytest.mark.slow
+def test_a_barrier_holds_what_rests_on_it(validate):
+    """½ ρ g h² of the depth at its foot, less π τ0 h/2 where the layer is stretched, as after flowing back
+    from the barrier, and more by as much where it is compressed; 10 % for reading h two cells before it."""
+    p, depth = given("barrier"), measured("barrier", "depth_at_barrier")
+    weight, stretch = p["density"] * G * depth**2 / 2, math.pi / 2 * p["yield_stress"] * depth
+    force = measured("barrier", "force_on_barrier")
+    validate("Barrier at rest: force over the least for its depth", force / (weight - stretch), above(0.9))
+    validate("Barrier at rest: force over the most for its depth", force / (weight + stretch), below(1.1))

@@ -8,7 +8,6 @@ import numpy as np
 import xarray
 
 from ..energies import CURVES
-from . import mass_flow
 from .histories import listed, of_curves, rows_of
 from .section import Section, note, pairs, table
 from .section import charts as charts_side_by_side
@@ -35,12 +34,11 @@ REST = "rest"
 
 
 def section(source: Source) -> Section | None:
-    """The ledger as a table and against time, the energies, and the mass that comes in and goes out."""
+    """The ledger as a table and against time, and the energies of the material."""
     ledger = _ledger(source)
     drawn = {
         "energies": _energies(source),
         "causes": None if ledger is None else _energy_by_cause(source, ledger),
-        "passed": mass_flow.chart(source),
     }
     charts = {name: chart for name, chart in drawn.items() if chart is not None}
     said = [*_mass(source), *([] if ledger is None else _energy(ledger))]

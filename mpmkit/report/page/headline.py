@@ -60,7 +60,8 @@ def _ending(source: Source) -> str:
         ).strip()
     can_continue = why == "interrupted" and Checkpoints(RunDirectory(source.directory).checkpoints).paths()
     further = f" {CONTINUE}" if can_continue else ""
-    return f"{ENDED[why]} at t = {seconds(end)}. {_state(source)}{further}"
+    state = _state(source) if end > 0 else "The material had not moved yet."
+    return f"{ENDED[why]} at t = {seconds(end)}. {state}{further}"
 
 
 def _state(source: Source) -> str:
@@ -138,7 +139,8 @@ def _t500(source: Source) -> list[tuple[str, str, str]]:
 
 def _slump(source: Source) -> tuple[str, str, str] | None:
     value = _last(source, "slump")
-    if value is None or source.results.stopped_by_guard:
+    empty = not source.results.case["bodies"]  # a scene that is empty at the start has no initial height
+    if value is None or empty or source.results.stopped_by_guard:
         return None
     return "Slump", length(value), "how far the top of the material sank, on its axis"
 

@@ -7,9 +7,10 @@ import numpy as np
 from ...case.model import Scheme
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
-from ...kernels import domains, shifts, volumes
+from ...kernels import domains, shifts, sums, volumes
 from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.splines import SUPPORT
 from ...kernels.tensors import shear_rate
 from ...registry import audit
 from ..energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
@@ -140,15 +141,26 @@ class Stage:
         )  # fmt: skip
         return float(largest.max(initial=0.0))
 
+    def lend(self, base: np.ndarray, tables: np.ndarray) -> None:
+        """Memory that a redistribution may overwrite: ``(n, dim)`` integers of 32 bits, and doubles."""
+        self._lent = base, tables
+
     def redistribute_if_due(self, window: Window, sorting: Sorting) -> bool:
-        """Redistribute if the summed shear requires it; return whether it did. Particles must be sorted."""
+        """Redistribute if the summed shear requires it; return whether it did. Particles must be sorted.
+
+        The tables of the last step are overwritten.
+        """
         author = self.redistribution
         if not self.acts or not audit.require_truth(author, "is_due", author.is_due(self.shear)):
             return False
         position, size = self._particles.position, np.ascontiguousarray(self._sizes())
         self._window, self._tasks = window, sorting.tasks
-        self._splines = self.nodes = self._lattice(1, position, size)
-        self.places = self._lattice(self._times, position, size)
+        base, memory = self._lent
+        needed = 2 * SUPPORT * position.size
+        memory = memory[:needed] if len(memory) >= needed else np.empty(needed)
+        weights = memory.reshape(2, *position.shape, SUPPORT)
+        self._splines = self.nodes = self._lattice(1, position, size, base, weights[0])
+        self.places = self._lattice(self._times, position, size, np.empty_like(base), weights[1])
         before, momentum = self._energy_of_particles(), self._momentum_of_particles()
         author.redistribute(self, self.elapsed)
         self.energy += self._energy_of_particles() - before
@@ -163,10 +175,11 @@ class Stage:
         return kinetic_energy(p) + stored + potential_energy(p, self._downwards)
 
     def _momentum_of_particles(self) -> np.ndarray:
-        return (self._particles.mass[:, None] * self._particles.velocity).sum(axis=0)
+        p = self._particles
+        return np.array([sums.moment(p.mass, p.velocity, along) for along in np.eye(p.dim)])
 
-    def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
-        return SplineLattice(self._block(times, centred=False), self._tasks, position, size)
+    def _lattice(self, times: int, *arrays: np.ndarray) -> SplineLattice:
+        return SplineLattice(self._block(times, centred=False), self._tasks, *arrays)
 
     def _block(self, times: int, centred: bool) -> Mirrored:
         """The block over the window, kept for as long as the window stays where it is."""
@@ -231,11 +244,9 @@ class Stage:
         for part in self._fluids():
             shifts.shift(p.position[part], displacement[part], low, high, p.affine[part], change[part])
         if p.affine.shape[1]:
-            for axis in range(p.dim):
-                along = np.ascontiguousarray(change[:, axis])
-                # Momentum added to a node is taken from its neighbours, so that the sum is conserved.
-                taken = self._splines.at_particles(self._splines.average(along, p.mass))
-                p.velocity[:, axis] += along - taken
+            # Momentum added to a node is taken from its neighbours, so that the sum is conserved.
+            for axis, average in enumerate(self._splines.averages(change, p.mass)):
+                p.velocity[:, axis] += change[:, axis] - self._splines.at_particles(average)
 
     def _kept_inside(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest positions, m, along each axis: off the walls, and not out of an open face; only
