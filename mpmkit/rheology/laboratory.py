@@ -155,6 +155,10 @@ def _turning_vane(p: Given) -> float:
     return _vane(p, p["turns_per_second"])
 
 
+def _filling(p: Given) -> float:
+    return p["mass"] / (p["density"] * math.pi * p["form_radius"] ** 2)
+
+
 def _tube(p: Given) -> float:
     return tube_gradient(p["tube_radius"], p["mean_speed"], p["yield_stress"], p["plastic_viscosity"])
 
@@ -201,6 +205,9 @@ FORMULAS: dict[str, list[Formula]] = {
     "v_funnel": [
         Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",
                 _v_funnel, None)
+    ],
+    "pour_into_form": [
+        Formula("mean_depth", "the volume that is poured over the area of the form, exact", _filling, 0.02)
     ],
     "tube_extrusion": [Formula("pressure_gradient", "Buckingham & Reiner, exact", _tube, 0.03)],
     "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],
