@@ -1,7 +1,8 @@
 """Check that the docs are whole; prints what is not, and ends with status 1 if there is anything.
 
     python docs/check.py                       # marks of merges, dead links, missing files, figures
-                                               # without a script, phrases that few understand
+                                               # without a script, phrases that few understand, commands,
+                                               # options and keys of a case that do not exist
     python docs/check.py --scripts             # and that every script has a help that writes nothing
     python docs/check.py --run runs/slump      # and that the README's numbers are those of this run
 
@@ -95,6 +96,16 @@ def files_that_are_not_there() -> Iterator[str]:
         for name in TEST.findall(page.read_text(encoding="utf-8")):
             if not list(ROOT.glob(f"tests/**/{name}")):
                 yield f"{_named(page)}: there is no test file '{name}'"
+
+
+def names_that_do_not_exist() -> Iterator[str]:
+    """Commands, options and keys of a case on the pages; the changelog may name old ones."""
+    from dead_names import dead_names  # only here: it loads the command line of mpmkit
+
+    for page in tracked("*.md"):
+        if page.name != "CHANGELOG.md":
+            for said in dict.fromkeys(dead_names(page.read_text(encoding="utf-8"))):
+                yield f"{_named(page)}: {said}"
 
 
 def riddles() -> Iterator[str]:
@@ -225,7 +236,7 @@ def main() -> None:
     parser.add_argument("--run", type=Path, metavar="DIR", help="run directory of cases/slump.json")
     chosen = parser.parse_args()
     wrong = [*merge_marks(), *dead_links(), *files_that_are_not_there(), *figures_without_a_source()]
-    wrong += [*cases_that_the_gallery_lacks(), *riddles()]
+    wrong += [*cases_that_the_gallery_lacks(), *names_that_do_not_exist(), *riddles()]
     if chosen.scripts:
         wrong += scripts_without_help()
     if chosen.run is not None:

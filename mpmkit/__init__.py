@@ -43,9 +43,14 @@ _HOME = {
 }
 
 
+def __dir__() -> list[str]:
+    """The public names, for completion in notebooks, also those that are not loaded yet."""
+    return sorted({*globals(), *__all__})
+
+
 def __getattr__(name: str) -> Any:
-    # Loaded when asked for: a plug-in that imports mpmkit.contracts must not pull in the solver, and the
-    # command line should have taken hold of Ctrl-C before anything takes its time.
+    # Loaded at the first use: a plug-in that imports mpmkit.contracts must not load the solver, and the
+    # command line must handle Ctrl-C before slow imports.
     if name in _HOME:
         from importlib import import_module
 

@@ -9,7 +9,7 @@ LONGEST_REASON = 300
 
 
 class MpmkitError(Exception):
-    """An error that is told in one sentence, without a traceback."""
+    """An error that is shown as one sentence, without a traceback."""
 
     exit_status = 1
 
@@ -60,7 +60,7 @@ class PluginFault(Exception):
     """A plug-in gave back what cannot be used, or wrote where it must not; ``blame`` names it.
 
     Attributes:
-        plugin: whose fault it is; None for the one that called the framework.
+        plugin: the plug-in at fault; None for the one that called the framework.
         particle: number of the particle concerned, or None.
     """
 

@@ -82,7 +82,7 @@ class Window:
         return [line["message"] for line in self.driver.get_log("browser") if line["level"] == "SEVERE"]
 
     def requests(self) -> list[str]:
-        """Addresses asked for since the last call, but for files and what the page or the browser holds."""
+        """Addresses requested since the last call, except files, and data inside the page or the browser."""
         messages = [json.loads(line["message"])["message"] for line in self.driver.get_log("performance")]
         sent = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
         return [address for address in sent if not address.startswith(("file:", "data:", "blob:", "chrome"))]

@@ -1,4 +1,4 @@
-"""A fit that costs nothing: an executor with a closed form in the place of runs."""
+"""Fits that cost little: a closed form in the place of runs, and a tiny block that flows apart."""
 
 import copy
 import math
@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray
+from test_cli import CASE as BLOCK
 
+import mpmkit
 from mpmkit.fitting import parse_fit
 from mpmkit.study.work import Outcome
 
@@ -73,11 +75,12 @@ class Pretend(Executor):
     Args:
         stopped: a function of a material that says whether a guard stops its run.
         offset: of a model with cells of h, as part of its spread: offset · h/20 mm.
+        widest: diameter of the domain, m; a run ends where the material leaves it.
     """
 
-    def __init__(self, stopped=lambda material: False, offset=0.0):
+    def __init__(self, stopped=lambda material: False, offset=0.0, widest=math.inf):
         self.ran = []
-        self._stopped, self._offset = stopped, offset
+        self._stopped, self._offset, self._widest = stopped, offset, widest
 
     def submit(self, work, /, data, threads, page):
         self.ran.append(data)
@@ -92,9 +95,17 @@ class Pretend(Executor):
         time = np.linspace(0, data["until"], 401)
         series = spread(time, material["yield_stress"], beyond_yield(material))
         series = series * (1 + self._offset * data["grid"]["cell_size"] / 0.02)
+        left = bool((series > self._widest).any())
+        if left:
+            inside = int(np.argmax(series > self._widest)) + 1
+            time, series = time[:inside], series[:inside]
         above = series >= 0.5
         t500 = float(np.interp(0.5, series, time)) if above.any() else None
         summary = {"t500": t500, "final_spread": float(series[-1]), "final_slump": 0.2, "final_height": 0.1}
+        fate = "particle-outside" if left else "finished"
+        if left:
+            summary |= {"final_spread": None, "final_slump": None, "final_height": None}
+        summary["stopped_because"] = fate
         fields = {
             "spread_diameter": ("time", series, {"units": "m"}),
             "height": ("time", 0.02 / series**2, {"units": "m"}),
@@ -106,7 +117,7 @@ class Pretend(Executor):
         with tempfile.TemporaryDirectory() as place:
             path = Path(place) / "history.nc"
             xarray.Dataset(fields, {"time": ("time", time, {"units": "s"})}).to_netcdf(path, engine="netcdf4")
-            return Outcome("finished", "", summary, COST, path.read_bytes(), page)
+            return Outcome(fate, "it left" if left else "", summary, COST, path.read_bytes(), page)
 
 
 def a_fit(measurements, parameters=PARAMETERS, changes=None, **keys):
@@ -116,11 +127,14 @@ def a_fit(measurements, parameters=PARAMETERS, changes=None, **keys):
     return parse_fit({"name": "slump", "tests": {"slump": test}, "parameters": parameters} | keys)
 
 
-def curve(path, tau0, stress, noise=0.0, seed=0, rows=40):
+ROWS = np.linspace(0.1, 2.0, 40)
+"""Times of a measured curve, s."""
+
+
+def curve(path, tau0, stress, noise=0.0, seed=0, time=ROWS):
     """Write a measured curve, and return its measurement."""
-    time = np.linspace(0.1, 2.0, rows)
     value = spread(time, tau0, stress)
-    value = value * (1 + noise * np.random.default_rng(seed).standard_normal(rows))
+    value = value * (1 + noise * np.random.default_rng(seed).standard_normal(len(time)))
     lines = ["# made by a closed form", "time_s,spread_diameter_m"]
     lines += [f"{t:.6f},{d:.8f}" for t, d in zip(time, value, strict=True)]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -128,7 +142,49 @@ def curve(path, tau0, stress, noise=0.0, seed=0, rows=40):
     return {"variable": "spread_diameter", "file": str(path), "relative_uncertainty": part}
 
 
+def bound_of_a_curve(time, tau0, viscosity, noise):
+    """Least standard deviations of ln τ0 and ln μ from D(t) with independent relative noise (Cramér and Rao).
+
+    The covariance of any unbiased estimate is at least noise² (Jᵀ J)⁻¹, J = ∂ ln D/∂(ln τ0, ln μ) by row:
+
+        ∂D/∂ln τ0 = −E/5 (1 − e), ∂D/∂ln μ = −(E − D0) e t/T² ∂T/∂ln μ, e = exp(−t/T), ∂T/∂ln μ = μ/1000.
+    """
+    time, end, scale = np.asarray(time), final_spread(tau0), time_scale(viscosity)
+    decay = np.exp(-time / scale)
+    of_stress = -end / 5 * (1 - decay)
+    of_viscosity = -(end - FIRST) * decay * time / scale**2 * viscosity / 1000
+    slopes = np.stack([of_stress, of_viscosity], axis=1) / spread(time, tau0, viscosity)[:, None] / noise
+    return np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
+
+
 def t500(tau0, stress):
     """s"""
     end = final_spread(tau0)
     return time_scale(stress) * math.log((end - FIRST) / (end - 0.5))
+
+
+VISCOSITY_OF_A_BLOCK = "bodies.0.material.viscosity"
+
+
+def block_of(viscosity):
+    """The content of a fit file: the spread of a tiny block at two times, from a run with this viscosity."""
+    case = copy.deepcopy(BLOCK) | {"until": 0.2}
+    truth = copy.deepcopy(case)
+    truth["bodies"][0]["material"]["viscosity"] = viscosity
+    spread = mpmkit.run(mpmkit.parse_case(truth)).spread_diameter
+    measured = [
+        {
+            "variable": "spread_diameter",
+            "time": time,
+            "value": float(spread.interp(time=time)),
+            "relative_uncertainty": 0.005,
+        }
+        for time in (0.1, 0.2)
+    ]
+    test = {"case": case, "measurements": measured, "stages": [{}], "model_error": 0}
+    return {
+        "name": "block",
+        "tests": {"block": test},
+        "parameters": {VISCOSITY_OF_A_BLOCK: {"low": 100, "high": 2000}},
+        "pages": False,
+    }

@@ -4,28 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.box import Box
+from mpmkit_plugins.body_shapes.cylinder import Cylinder
+from mpmkit_plugins.body_shapes.frustum import Frustum
+from mpmkit_plugins.body_shapes.polygon import Polygon
+from mpmkit_plugins.body_shapes.sphere import Sphere
 
-from mpmkit.geometry import (
-    Box,
-    Cylinder,
-    Frustum,
-    Polygon,
-    Sphere,
-    sample,
-)
+from mpmkit.geometry import sample
 from mpmkit.spaces import SPACES
 
 SOLID, PLANE, RADIAL = SPACES["3d"], SPACES["plane-strain"], SPACES["axisymmetric"]
-CONE = Frustum(kind="frustum", bottom_radius=0.1, top_radius=0.05, height=0.3)
-ROD = Cylinder(kind="cylinder", radius=0.1, height=0.2)
-BALL = Sphere(kind="sphere", centre=[0, 0, 0.1], radius=0.1)
-BALL_2D = Sphere(kind="sphere", centre=[0, 0.1], radius=0.1)
-BLOCK = Box(kind="box", lower=[0, 0, 0], upper=[0.1, 0.2, 0.3])
-RING = Box(kind="box", lower=[0.1, 0], upper=[0.3, 0.5])
+CONE = Frustum(bottom_radius=0.1, top_radius=0.05, height=0.3)
+ROD = Cylinder(radius=0.1, height=0.2)
+BALL = Sphere(centre=[0, 0, 0.1], radius=0.1)
+BALL_2D = Sphere(centre=[0, 0.1], radius=0.1)
+BLOCK = Box(lower=[0, 0, 0], upper=[0.1, 0.2, 0.3])
+RING = Box(lower=[0.1, 0], upper=[0.3, 0.5])
 CORNERS = [[0.05, 0], [0.1, 0], [0.1, 0.2], [0.3, 0.5], [0.05, 0.5]]
 """A funnel with its outlet, which has a corner that points inwards."""
-FUNNEL = Polygon(kind="polygon", corners=CORNERS)
-HOPPER = Polygon(kind="polygon", corners=CORNERS[::-1], y=[-0.1, 0.05])
+FUNNEL = Polygon(corners=CORNERS)
+HOPPER = Polygon(corners=CORNERS[::-1], y=[-0.1, 0.05])
 
 
 def fill(shape, space, cell=0.01, per_axis=2, keep=None, origin=0.0):

@@ -176,7 +176,7 @@ def test_leaving_out_the_others_changes_no_bit(faces, order, monkeypatch):
 
 
 def test_nothing_is_ever_put_on_a_node_out_of_reach():
-    """A small body flies between two that rest, so far within its block that it is not sorted anew."""
+    """A small body flies between two at rest, so far inside its block that it is not sorted again."""
 
     def block(lower, upper, velocity):
         material = {"law": "newtonian", "density": 1000, "viscosity": 5, "sound_speed": 20}

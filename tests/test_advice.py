@@ -203,7 +203,7 @@ UNKNOWN = {
     "no redistribution": ["scheme.redistribution=none"],
     "no relaxation": ["scheme.volumetric.relaxation=0"],
     "one particle a cell": ["bodies.0.particles_per_cell=1"],
-    "nine particles a cell": ["bodies.0.particles_per_cell=9"],
+    "nine particles per cell": ["bodies.0.particles_per_cell=9"],
     "water": WATER,
     "another yield stress": ["bodies.0.material.yield_stress=100"],
     "another density": ["bodies.0.material.density=2300"],

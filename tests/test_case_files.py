@@ -10,12 +10,13 @@ from pathlib import Path
 
 import pytest
 import xarray
+from mpmkit_plugins.body_shapes.mesh import Mesh
 
 import mpmkit
 from mpmkit.case import load_case, parse_case
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, OutputError
-from mpmkit.geometry import Mesh, sample
+from mpmkit.geometry import sample
 from mpmkit.report import write_report
 from mpmkit.running.case_files import named_files, portable
 from mpmkit.running.runner import resume
@@ -143,7 +144,7 @@ def test_a_copy_gives_the_same_particles_to_the_bit_and_needs_no_other_file(
 ):
     monkeypatch.chdir(tmp_path)
     write(tmp_path / name)
-    original = Mesh(kind="mesh", file=name, scale=0.9, translate=[0.01, 0.0, 0.0])
+    original = Mesh(file=name, scale=0.9, translate=[0.01, 0.0, 0.0])
     (tmp_path / "copies").mkdir()
     copy = tmp_path / "copies" / original.content_name("file")
     copy.write_bytes(original.content("file"))

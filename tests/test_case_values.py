@@ -45,7 +45,7 @@ BAD = [
     (
         f"{SHAPE}.kind",
         ABSENT,
-        'shape.kind is missing; it must be "frustum", "cylinder", "box", "sphere", "polygon" or "mesh"',
+        'shape.kind is missing; it must be "box", "cylinder", "frustum", "mesh", "polygon" or "sphere"',
     ),
     (f"{MATERIAL}.law", ABSENT, 'material.law is missing; it must be "bingham", "'),
     (f"{MATERIAL}.density", ABSENT, "density is missing; it must be a number above 0, in kg/m^3"),
@@ -62,7 +62,7 @@ BAD = [
         3,
         "bodies.0 is 3; it must be an object with the keys 'shape' and 'material', and optionally",
     ),
-    (SHAPE, "box", "bodies.0.shape is \"box\"; it must be an object with a 'kind' that is"),
+    (SHAPE, "box", "bodies.0.shape.lower is missing; it must be a list of 2 to 3 numbers, in m"),
     (f"{SHAPE}.lower", [0.2, "a"], 'bodies.0.shape.lower.1 is "a"; it must be a number, in m'),
     (
         "bodies.0.particles_per_cell",

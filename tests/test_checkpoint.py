@@ -111,7 +111,7 @@ def test_every_case_with_every_order_and_shape(name, order, shape, redistributio
 
 @pytest.mark.parametrize("name", COARSE)
 def test_stopped_where_the_limits_and_the_guards_are_looked_at_next(name):
-    """No step has been done since it was taken up: there is nothing on the nodes that could be looked at."""
+    """No step has been made since the run was continued: the nodes are empty and cannot be checked."""
     case = load_case(CASES / f"{name}.json", COARSE[name])
     assert_same(*stopped_at_half(case, steps=4 * CONTROL_INTERVAL))
 
@@ -281,7 +281,7 @@ def test_where_all_are_damaged_the_run_is_refused_and_left_alone(stopped):
 
 
 def test_nothing_in_a_checkpoint_is_unpickled(stopped, tmp_path):
-    """An array of objects would be: whoever made the file, checksum and all, does not get to run code."""
+    """An array of objects could run code: it is refused, also in a file with a right checksum."""
 
     class Evil:
         def __reduce__(self):

@@ -1,4 +1,4 @@
-"""``mpmkit … | head -1``: nobody reads any more. The command ends without a word, and a run to its end."""
+"""``mpmkit … | head -1``: the reader is gone. A command ends without a message, a run goes to its end."""
 
 import json
 import os
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX"
 
 
 def unread(*arguments, here, errors=False):
-    """Run a command whose standard output, and with ``errors`` the standard error as well, nobody reads."""
+    """Run a command whose standard output is closed, and with ``errors`` also its standard error."""
     reading, writing = os.pipe()
     os.close(reading)
     try:

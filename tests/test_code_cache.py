@@ -213,7 +213,7 @@ def changing(x):
 
 
 def test_a_constant_that_changes_within_a_process_is_not_kept_as_another(monkeypatch, tmp_path):
-    """numba goes on with the old constant where it has compiled a function: so must nobody else."""
+    """numba keeps the old constant in a function that it has compiled; our cache must not keep that code."""
     monkeypatch.setattr(code_folders, "cache_root", lambda: tmp_path)
     inner = cached_code(numba.njit)(changing)
     assert inner(1.0) == 2.0

@@ -61,7 +61,7 @@ def fullness(simulation):
 @pytest.mark.parametrize("wall", WALLS)
 @pytest.mark.parametrize("space", AXES)
 def test_boxes_that_tile_a_domain_fill_its_nodes(space, wall, per_axis):
-    """Σ_p V_p N_np = V_n, at walls, edges and corners too; but for an axis, where there is no bound."""
+    """Σ_p V_p N_np = V_n, at walls, edges and corners too; except on the axis, where there is no bound."""
     found = fullness(filled(space, wall, per_axis))
     assert len(found) >= 6**2
     np.testing.assert_allclose(found, 1.0, rtol=1e-12)

@@ -167,7 +167,7 @@ def test_each_file_on_a_full_disk_says_so(tmp_path, writes):
 
 
 def test_a_run_directory_that_vanishes(tmp_path):
-    """Somebody tidies up while it runs."""
+    """Another program deletes files while it runs."""
     process = subprocess.Popen(
         [*RUN, "--out", "run", "--until", "1000"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )

@@ -41,7 +41,7 @@ def test_compiling_is_said_when_something_is_compiled_and_once(monkeypatch):
             with event.trigger_event("numba:compile"):
                 pass
     assert shown.getvalue().count(COMPILING) == 1
-    with event.trigger_event("numba:compile"):  # nobody listens any more
+    with event.trigger_event("numba:compile"):  # no listener is left
         pass
     assert shown.getvalue().count(COMPILING) == 1
 
@@ -71,6 +71,13 @@ def test_the_bar_fits(monkeypatch, width, name):
     assert len(line.removeprefix("\x1b[2K")) <= width
     assert ("1:23 left" in line) == (width >= 60 or name == "slump")
     assert ("3.20 M particle-steps/s" in line) == (width >= (80 if name == "slump" else 100))
+
+
+@pytest.mark.parametrize(
+    ("speed", "words"), [(3.2e6, "3.20 M"), (1.5e5, "0.15 M"), (3742.6, "3,743"), (0.0, "0")]
+)
+def test_a_small_speed_is_not_shown_as_zero(speed, words):
+    assert f" {words} particle-steps/s " in display._lines(0.1, 1.0, speed, 10.0)[0]
 
 
 def test_drawing_is_said_and_the_pictures_named(tmp_path, capfd, monkeypatch):

@@ -4,17 +4,23 @@ import math
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.box import Box
+from mpmkit_plugins.body_shapes.cylinder import Cylinder
+from mpmkit_plugins.body_shapes.frustum import Frustum
+from mpmkit_plugins.body_shapes.mesh import Mesh
+from mpmkit_plugins.body_shapes.polygon import Polygon
+from mpmkit_plugins.body_shapes.sphere import Sphere
 
-from mpmkit.geometry import Box, Cylinder, Frustum, Inverted, Mesh, Polygon, Sphere
+from mpmkit.geometry import Inverted
 from mpmkit.spaces import SPACES
 
-FRUSTUM = Frustum(kind="frustum", bottom_radius=0.1, top_radius=0.05, height=0.3)
-CONE = Frustum(kind="frustum", bottom_radius=0.0, top_radius=0.1, height=0.2)
-CYLINDER = Cylinder(kind="cylinder", radius=0.1, height=0.2)
-BOX = Box(kind="box", lower=[0.0, -0.1], upper=[0.2, 0.1])
-BOX_3D = Box(kind="box", lower=[0.0, -0.1, 0.0], upper=[0.2, 0.1, 0.3])
-TRIANGLE = Polygon(kind="polygon", corners=[[0, 0], [0.3, 0], [0, 0.4]])
-PRISM = Polygon(kind="polygon", corners=TRIANGLE.corners, y=[0.0, 0.2])
+FRUSTUM = Frustum(bottom_radius=0.1, top_radius=0.05, height=0.3)
+CONE = Frustum(bottom_radius=0.0, top_radius=0.1, height=0.2)
+CYLINDER = Cylinder(radius=0.1, height=0.2)
+BOX = Box(lower=[0.0, -0.1], upper=[0.2, 0.1])
+BOX_3D = Box(lower=[0.0, -0.1, 0.0], upper=[0.2, 0.1, 0.3])
+TRIANGLE = Polygon(corners=[[0, 0], [0.3, 0], [0, 0.4]])
+PRISM = Polygon(corners=TRIANGLE.corners, y=[0.0, 0.2])
 FLAT, ROUND, SOLID = SPACES["plane-strain"], SPACES["axisymmetric"], SPACES["3d"]
 SLANT = math.hypot(0.3, 0.05)
 T = 0.02
@@ -44,10 +50,10 @@ def at(solid, *points):
         (BOX, ROUND, [0.19, 0.0], -0.01, [1, 0]),
         (BOX, FLAT, [0.01, 0.0], -0.01, [-1, 0]),
         (BOX_3D, SOLID, [0.22, 0.11, 0.32], 0.03, [2, 1, 2]),  # its corner
-        (Sphere(kind="sphere", centre=[0, 0.1], radius=0.1), ROUND, [0.12, 0.26], 0.1, [3, 4]),
-        (Sphere(kind="sphere", centre=[0, 0], radius=0.1, inner_radius=0.04), FLAT, [0.03, 0], 0.01, [-1, 0]),
+        (Sphere(centre=[0, 0.1], radius=0.1), ROUND, [0.12, 0.26], 0.1, [3, 4]),
+        (Sphere(centre=[0, 0], radius=0.1, inner_radius=0.04), FLAT, [0.03, 0], 0.01, [-1, 0]),
         (
-            Sphere(kind="sphere", centre=[0, 0], radius=0.1, inner_radius=0.04),
+            Sphere(centre=[0, 0], radius=0.1, inner_radius=0.04),
             FLAT,
             [0.06, 0],
             -0.02,
@@ -83,7 +89,7 @@ def test_distance_and_direction(shape, space, point, distance, gradient):
 @pytest.mark.parametrize("space", [FLAT, ROUND, SOLID], ids=lambda space: space.name)
 def test_a_mould_is_open_at_both_ends(point, distance, gradient, space):
     wide = (lambda v: [v[0], 0.0, v[1]]) if space.dim == 3 else list
-    found, direction = at(FRUSTUM.shell(space, T), wide(point))
+    found, direction = at(FRUSTUM.shell(space, T, FRUSTUM.ends_left_open(space)), wide(point))
     assert found[0] == pytest.approx(distance, abs=1e-15)
     if gradient is not None:
         np.testing.assert_allclose(direction[0], wide(np.array(gradient) / np.hypot(*gradient)), atol=1e-12)
@@ -152,7 +158,7 @@ def boundary(solid, extent, dim, seed):
 @pytest.mark.parametrize(
     ("shape", "ends"),
     [
-        (FRUSTUM, None),
+        (FRUSTUM, ["bottom", "top"]),
         (FRUSTUM, []),
         (CONE, ["top"]),
         (CYLINDER, ["bottom"]),
@@ -175,9 +181,11 @@ def test_no_point_of_the_surface_is_nearer(shape, ends):
 @pytest.mark.parametrize("shape", [FRUSTUM, CONE, CYLINDER])
 def test_a_body_of_revolution_is_its_section_turned(shape):
     x = np.random.default_rng(3).uniform(-0.3, 0.4, (500, 3))
-    turned, direction = shape.shell(SOLID, T).distance(x)
+    turned, direction = shape.shell(SOLID, T, shape.ends_left_open(SOLID)).distance(x)
     radius = np.hypot(x[:, 0], x[:, 1])
-    section, in_plane = shape.shell(ROUND, T).distance(np.column_stack([radius, x[:, 2]]))
+    section, in_plane = shape.shell(ROUND, T, shape.ends_left_open(ROUND)).distance(
+        np.column_stack([radius, x[:, 2]])
+    )
     np.testing.assert_allclose(turned, section, rtol=0, atol=1e-15)
     np.testing.assert_allclose((direction[:, :2] * x[:, :2]).sum(axis=1) / radius, in_plane[:, 0], atol=1e-12)
 
@@ -201,7 +209,7 @@ def box_mesh(tmp_path_factory):
     made = trimesh.creation.box(extents=(0.2, 0.2, 0.3)).subdivide()
     made.apply_translation((0.1, 0.0, 0.15))
     made.export(file)
-    return Mesh(kind="mesh", file=str(file))
+    return Mesh(file=str(file))
 
 
 def test_a_mesh_of_a_box_is_the_box(box_mesh):
@@ -213,7 +221,7 @@ def test_a_mesh_of_a_box_is_the_box(box_mesh):
 
 
 def test_a_shell_of_a_mesh(box_mesh):
-    shell = box_mesh.shell(SOLID, T)
+    shell = box_mesh.shell(SOLID, T, box_mesh.ends_left_open(SOLID))
     found, _ = at(shell, [0.1, 0, 0.01], [0.1, 0, -0.01], [0.1, 0, -0.05], [0.1, 0, 0.0])
     assert found.tolist() == pytest.approx([0.01, -0.01, 0.03, 0.0], abs=1e-8)
     assert box_mesh.ends(SOLID) == ()

@@ -58,6 +58,23 @@ def test_a_file_that_is_named_and_not_there_is_found(checks, tmp_path):
     ]
 
 
+def test_a_name_on_a_page_that_does_not_exist_is_found(checks, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    page = (
+        "`mpmkit run a.json --until 1 --fastt` `mpmkit walk --out b` `--vary a=1` `--gone` `scheme.order`\n"
+        "`scheme.time_step.fraction` `scheme.time_stp` `walls.mould.contact` `bodies.0.material.colour`\n"
+        "mpmkit simulates the flow.\n"
+    )
+    (tmp_path / "README.md").write_text(page)
+    assert list(checks.names_that_do_not_exist()) == [
+        "README.md: 'mpmkit run' has no option --fastt",
+        "README.md: there is no command 'mpmkit walk'",
+        "README.md: there is no option --gone",
+        "README.md: a case has no key 'scheme.time_stp'",
+        "README.md: a case has no key 'bodies.0.material.colour'",
+    ]
+
+
 def test_a_phrase_that_few_understand_is_found(checks, tmp_path):
     (tmp_path / "README.md").write_text("The rate is 0.5 unless\ntold.\n")
     assert list(checks.riddles()) == ["README.md: 'unless told' is hard to understand; say it in plain words"]

@@ -1,4 +1,4 @@
-"""exp, expm1, log and power against NumPy in a longer number format, in units in the last place (ulp)."""
+"""exp, expm1, log, powers and cube roots against NumPy in a longer format, in units of the last place."""
 
 from __future__ import annotations
 
@@ -39,6 +39,12 @@ def _log(x, out):
 def _power(x, exponent, out):
     for i in range(len(x)):
         out[i] = elementary.power(x[i], exponent)
+
+
+@function()
+def _cube_root(x, out):
+    for i in range(len(x)):
+        out[i] = elementary.cube_root(x[i])
 
 
 def call(function, x, *more):
@@ -103,6 +109,14 @@ def test_power(exponent):
     error = np.abs(call(_power, x, exponent) / exact - 1) / np.finfo(float).eps
     assert (error < FEW * (1 + np.abs(exponent * np.log(x)))).all()
     assert call(_power, [1.0], exponent) == 1.0
+
+
+def test_cube_root():
+    """Of all positive numbers but the very largest and least; that of zero is zero."""
+    rng = np.random.default_rng(5)
+    x = np.concatenate([10 ** rng.uniform(-300, 300, 30_000), rng.uniform(0.5, 8, 30_000), [1.0, 8.0, 27.0]])
+    assert ulps(call(_cube_root, x), np.cbrt(x.astype(np.longdouble))).max() < FEW
+    assert call(_cube_root, [0.0]) == 0.0
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="only compiled code makes a whole number of none")

@@ -91,8 +91,8 @@ def test_an_energy_that_is_not_the_work_of_the_pressure(energy, reason):
 @pytest.mark.parametrize(
     ("energy", "reason"),
     [
-        (lambda stress: -1e9, "an energy of -1e+09 J/m³; what is stored cannot be negative"),
-        (lambda stress: np.full(len(stress), -1e9), "what is stored cannot be negative"),
+        (lambda stress: -1e9, "an energy of -1e+09 J/m³; a stored energy cannot be negative"),
+        (lambda stress: np.full(len(stress), -1e9), "a stored energy cannot be negative"),
         (lambda stress: np.full(len(stress), np.nan), "an energy that is not finite"),
         (lambda stress: math.nan, "an energy that is not finite"),
         (lambda stress: None, "gave nothing as strain_energy; it must be a number"),

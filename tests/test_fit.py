@@ -8,7 +8,18 @@ import shutil
 import numpy as np
 import pytest
 import xarray
-from fits import PARAMETERS, VISCOSITY, YIELD_STRESS, Pretend, a_fit, curve, final_spread, t500
+from fits import (
+    PARAMETERS,
+    ROWS,
+    VISCOSITY,
+    YIELD_STRESS,
+    Pretend,
+    a_fit,
+    bound_of_a_curve,
+    curve,
+    final_spread,
+    t500,
+)
 
 import mpmkit
 from mpmkit.errors import CaseError, GuardStop
@@ -66,6 +77,21 @@ def test_both_come_from_the_final_spread_and_t500():
     for path, truth in ((YIELD_STRESS, 150), (VISCOSITY, 40)):
         assert found[path].identifiable
         assert found[path].low < truth < found[path].high
+
+
+def test_parameters_at_the_top_of_a_laboratory_case_are_found(tmp_path):
+    measured = [FINAL, {"variable": "t500", "value": t500(150, 40), "relative_uncertainty": 0.03}]
+    parameters = {f"parameters.{path.split('.')[-1]}": PARAMETERS[path] for path in PARAMETERS}
+    fit = a_fit(measured, parameters, changes={"case": "cases/lab/slump_flow.json"})
+    result = mpmkit.fit(fit, tmp_path, executor=Pretend())
+    for (path, found), truth, unit in zip(result.parameters.items(), (150, 40), ("Pa", "Pa s"), strict=True):
+        assert found.value == pytest.approx(truth, rel=0.02)
+        assert found.unit == unit
+        assert path.startswith("parameters.")
+    (curve_found,) = result.curves
+    assert curve_found.stress == pytest.approx(150 + 40 * curve_found.rate, rel=0.03)
+    page = (tmp_path / "fit.html").read_text(encoding="utf-8")
+    assert "yield stress (Pa)" in page
 
 
 def test_a_prior_is_no_measurement():
@@ -187,6 +213,22 @@ def test_a_run_that_a_guard_stops_turns_the_search_back(tmp_path):
     assert result.parameters[YIELD_STRESS].value == pytest.approx(150, rel=5e-3)
 
 
+def test_a_narrow_domain_does_not_change_the_interval():
+    """Runs whose material leaves the domain say that their spread is at least the last one."""
+    found, rough = [], FINAL | {"uncertainty": 0.05}
+    for widest in (2.0, 0.62):
+        executor = Pretend(widest=widest)
+        result = mpmkit.fit(a_fit([rough]), executor=executor)
+        stresses = [data["bodies"][0]["material"]["yield_stress"] for data in executor.ran]
+        assert final_spread(min(stresses)) > 0.62  # at least one run leaves the narrow domain
+        found.append(result.parameters[YIELD_STRESS])
+        assert "The final spread does not depend on the plastic viscosity between 5 and 500 Pa s." in (
+            result.sentences
+        )
+    wide, narrow = found
+    assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.02)
+
+
 def test_a_first_run_that_a_guard_stops_is_told(tmp_path):
     fit = a_fit([curve(tmp_path / "d.csv", 150, 40)])
     with pytest.raises(GuardStop, match=r"with bodies.0.material.yield_stress = .* it gained energy"):
@@ -216,32 +258,53 @@ def test_scipy_is_asked_for_in_one_sentence(monkeypatch):
 
 
 TRUTH = {YIELD_STRESS: 150, VISCOSITY: 40}
+EARLY = np.linspace(0.02, 1.0, 80)
+"""Times, s, most of which lie in the flow, which tells the viscosity."""
+
+
+def repeated(folder, time):
+    """Relative errors and intervals of fits to a hundred curves with noise of 1 %, by path."""
+    curves = ([curve(folder / "d.csv", 150, 40, noise=0.01, seed=seed, time=time)] for seed in range(100))
+    found = [mpmkit.fit(a_fit(measured, pages=False), executor=Pretend()).parameters for measured in curves]
+    return {path: [one[path] for one in found] for path in TRUTH}
 
 
 @pytest.fixture(scope="module")
-def repeated(tmp_path_factory):
-    """Fits to a hundred curves with noise of 1 %."""
-    file = tmp_path_factory.mktemp("curves") / "d.csv"
-    curves = ([curve(file, *TRUTH.values(), noise=0.01, seed=seed)] for seed in range(100))
-    return [mpmkit.fit(a_fit(measured), executor=Pretend()).parameters for measured in curves]
+def late(tmp_path_factory):
+    return repeated(tmp_path_factory.mktemp("late"), ROWS)
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory):
+    return repeated(tmp_path_factory.mktemp("early"), EARLY)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", TRUTH)
-def test_intervals_hold_the_truth_as_often_as_they_say(repeated, path):
-    held = sum(found[path].low < TRUTH[path] < found[path].high for found in repeated)
+@pytest.mark.parametrize(("rows", "time"), [("late", ROWS), ("early", EARLY)])
+def test_intervals_hold_the_truth_as_often_as_they_say_and_are_no_wider_than_they_must(
+    rows, time, path, request
+):
+    found, bound = request.getfixturevalue(rows)[path], bound_of_a_curve(time, 150, 40, 0.01)
+    held = sum(one.low < TRUTH[path] < one.high for one in found)
     assert 82 <= held <= 98  # 90 of 100 with a standard deviation of 3
-
-
-SCATTER = pytest.mark.xfail(
-    reason="the viscosity from this curve scatters by 5.6 % (standard deviation): 9 of 100 are off by more",
-    strict=True,
-)
+    width = np.median([np.log(one.high / one.low) for one in found])
+    assert width == pytest.approx(2 * 1.645 * bound[list(TRUTH).index(path)], rel=0.15)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("path", "most"), [(YIELD_STRESS, 0.03), pytest.param(VISCOSITY, 0.1, marks=SCATTER)]
-)
-def test_best_values_are_near_the_truth(repeated, path, most):
-    assert max(abs(found[path].value / TRUTH[path] - 1) for found in repeated) < most
+@pytest.mark.parametrize("path", TRUTH)
+@pytest.mark.parametrize(("rows", "time"), [("late", ROWS), ("early", EARLY)])
+def test_best_values_scatter_by_the_bound_of_cramer_and_rao(rows, time, path, request):
+    """The noise of the curve alone: no unbiased estimate scatters less, and 100 draws tell it to 7 %."""
+    errors = [np.log(one.value / TRUTH[path]) for one in request.getfixturevalue(rows)[path]]
+    bound = bound_of_a_curve(time, 150, 40, 0.01)[list(TRUTH).index(path)]
+    assert 0.8 < np.std(errors) / bound < 1.2
+    assert abs(np.mean(errors)) < 0.3 * bound  # 3 standard deviations of a mean of 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("path", "most"), [(YIELD_STRESS, 0.03), (VISCOSITY, 0.1)])
+def test_best_values_are_near_the_truth_if_the_rows_lie_in_the_flow(early, path, most):
+    """Targets, section 9. The bound is 0.7 % of the yield stress and 2.4 % of the viscosity."""
+    assert max(abs(one.value / TRUTH[path] - 1) for one in early[path]) < most

@@ -18,7 +18,7 @@ FIT = {
     "parameters": {YIELD_STRESS: {"low": 20, "high": 1000}},
 }
 CURVE = {"variable": "spread_diameter", "file": "d.csv", "relative_uncertainty": 0.01}
-ROWS = "time_s,spread_diameter_m\n0.1,0.3\n0.5,0.45\n1.0,0.52\n"
+ROWS = "time_s,spread_diameter_m,other_m\n0.1,0.3,0.4\n0.5,0.45,0.55\n1.0,0.52,0.57\n"
 
 
 def refused(tmp_path, monkeypatch, capsys, change, rows=ROWS):
@@ -66,8 +66,8 @@ BAD = {
     "meant": (parameter("bodies.0.material.yeld_stress"), "did you mean 'yield_stress'?"),
     "no such body": (parameter("bodies.7.material.yield_stress"), "bodies is a list of 1"),
     "no number": (
-        parameter("scheme.order.name"),
-        'it is "usl" in tests.slump.stages.0; a parameter must be',
+        parameter("bodies.0.material.law"),
+        'it is "bingham-evp" in tests.slump.stages.0; a parameter must be',
     ),
     "whole number": (parameter("bodies.0.particles_per_cell.0"), "it is a whole number"),
     "refused by the case": (
@@ -109,7 +109,7 @@ BAD = {
     "no column": (
         instead(**CURVE | {"columns": {"value": "D_mm"}}),
         "measurements.0.columns.value: 'd.csv' has no column 'D_mm'; its columns are time_s, "
-        "spread_diameter_m",
+        "spread_diameter_m, other_m",
     ),
     "no file": (instead(**CURVE | {"file": "nowhere.csv"}), "'nowhere.csv' cannot be read: No such file"),
     "no uncertainty": (
@@ -126,6 +126,93 @@ BAD = {
         "the last time is 9 s, and the case ends at 4 s; raise until in the case",
     ),
     "unknown key": (lambda fit, _: fit.update(parameter={}), "parameter"),
+    "an uncertainty of nothing": (measurement(uncertainty=1e-12), "it must be at least 1e-06 of the value"),
+    "bounds that are nearly one number": (
+        parameter(YIELD_STRESS, low=100, high=100.001),
+        "low is 100 and high is 100.001; they must differ by at least 0.001 of the value",
+    ),
+    "bounds over forty decades": (
+        parameter(YIELD_STRESS, low=1e-20, high=1e20),
+        "high must be at most 1e+09 times low",
+    ),
+    "a prior beyond the bounds": (
+        parameter(YIELD_STRESS, prior={"value": 5000, "deviation": 10}),
+        "prior.value is 5000; it must be from 20 to 1000",
+    ),
+    "a setting of the calculation": (
+        parameter("grid.cell_size", low=0.01, high=0.02),
+        "parameters.grid.cell_size: it is a setting of the calculation; a parameter must be a property of",
+    ),
+    "one parameter by two paths": (parameter("bodies.00.material.yield_stress"), "has no such place"),
+    "a stage that sets a parameter": (
+        lambda fit, _: fit["tests"]["slump"].update(stages=[{YIELD_STRESS: 50}, {}]),
+        f"tests.slump.stages.0 changes {YIELD_STRESS}, which is a parameter of the fit; leave it out",
+    ),
+    "a wall that is not there": (
+        instead(variable="wall_torque", time=1, value=3, uncertainty=0.1, of={"wall": "bob"}),
+        "measurements.0.of.wall is 'bob'; it must be one of z_min",
+    ),
+    "a part of a number": (measurement(of={"wall": "bob"}), "final_spread has no parts; leave it out"),
+    "a component that is not named": (
+        instead(variable="wall_force", time=1, value=3, uncertainty=0.1),
+        "wall_force has a value for each component; give of.component, one of r, z",
+    ),
+    "no mould": (
+        instead(variable="t500_from_lift", value=0.5, uncertainty=0.1),
+        "the case has no mould that is lifted",
+    ),
+    "at rest before the start": (
+        instead(variable="at_rest_since", value=-0.5, uncertainty=0.1),
+        "measurements.0.value is -0.5 s; it must be above 0",
+    ),
+    "a level beyond the domain": (
+        instead(variable="spread_diameter", reaches=5, value=1, uncertainty=0.1),
+        "measurements.0.reaches is 5 m, and the domain of the case ends at a spread of 1.2 m",
+    ),
+    "a level of the start": (
+        instead(variable="spread_diameter", reaches=0.1, value=1, uncertainty=0.1),
+        "measurements.0.reaches is 0.1 m; it must be above the spread at the start, 0.2 m",
+    ),
+    "energy of less than nothing": (
+        instead(variable="kinetic_energy", time=1, value=-1, uncertainty=0.1),
+        "measurements.0.value is -1 J; it must be at least 0",
+    ),
+    "no height": (
+        instead(variable="final_height", value=0, uncertainty=0.001),
+        "measurements.0.value is 0 m; it must be above 0",
+    ),
+    "a spread that shrinks": (
+        lambda _, m: m.extend(
+            {"variable": "spread_diameter", "time": t, "value": d, "uncertainty": 0.002}
+            for t, d in ((1, 0.5), (2, 0.4))
+        ),
+        "measurements.1 and tests.slump.measurements.2 contradict each other: the spread is 0.5 m at 1 s and "
+        "0.4 m at 2 s, but a spread does not shrink",
+    ),
+    "a T500 after 500 mm": (
+        lambda _, m: m.extend(
+            [
+                {"variable": "spread_diameter", "time": 1, "value": 0.45, "uncertainty": 0.002},
+                {"variable": "t500", "value": 0.5, "uncertainty": 0.01},
+            ]
+        ),
+        "contradict each other: the spread is 0.45 m at 1 s, and it reaches 0.5 m at 0.5 s",
+    ),
+    "two curves": (
+        lambda _, m: m.extend(
+            [CURVE, CURVE | {"columns": {"value": "other_m"}}],
+        ),
+        "contradict each other: the spread over time is 0.3 m by the one and 0.4 m by the other at 0.1 s",
+    ),
+    "a slump and a height": (
+        lambda _, m: m.extend(
+            [
+                {"variable": "final_height", "value": 0.1, "uncertainty": 0.001},
+                {"variable": "final_slump", "value": 0.1, "uncertainty": 0.001},
+            ]
+        ),
+        "slump and height add up to 0.2 m, and the body is 0.3 m tall at the start",
+    ),
     "a stage that is no case": (
         lambda fit, _: fit["tests"]["slump"].update(stages=[{"grid.cell_size": -1}]),
         "tests.slump.stages.0: grid.cell_size is -1",
@@ -145,6 +232,19 @@ def test_what_is_wrong_is_told_in_one_sentence(name, tmp_path, monkeypatch, caps
         ("time_s,spread_diameter_m\n0.1,0.3\n0.5,wide\n", "row 2: spread_diameter_m is 'wide'"),
         ("time_s,spread_diameter_m\n0.5,0.3\n0.1,0.4\n", "row 2: the time must grow from row to row"),
         ("time_s,spread_diameter_m\n", "has no row of numbers"),
+        (
+            "time_s,spread_diameter_m\n0,1,0,3\n",
+            "row 1 has 4 cells, and there are 2 columns; decimals are written with a point",
+        ),
+        ("time_s,spread_diameter_m\n0.1\n", "row 1: spread_diameter_m is missing"),
+        (
+            "time_s,spread_diameter_m,spread_diameter_m\n0.1,0.3,0.4\n",
+            "has two columns 'spread_diameter_m'; rename one of them",
+        ),
+        (
+            "time_s,spread_diameter_m\n0.1,0.5\n0.2,0.3\n",
+            "measurements.0 contradicts itself: the spread is 0.5 m at 0.1 s and 0.3 m at 0.2 s",
+        ),
         ("time_s,spread_diameter_m\n0.1,300\n0.5,450\n", "looks like millimetres: write 0.45"),
         ("time_s,spread_diameter_m\n100,0.3\n500,0.45\n", "looks like milliseconds: write 0.5"),
     ],

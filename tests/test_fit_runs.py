@@ -1,10 +1,11 @@
 """Fits of runs: of a tiny scene by default, and of a slump that other codes computed where there is time."""
 
-import copy
 from pathlib import Path
 
 import pytest
-from studies import CASE, Now
+from fits import VISCOSITY_OF_A_BLOCK as VISCOSITY
+from fits import block_of
+from studies import Now
 
 import mpmkit
 from mpmkit.fitting import load_fit, parse_fit
@@ -12,36 +13,10 @@ from mpmkit.fitting import load_fit, parse_fit
 FITS = Path(__file__).parents[1] / "cases/fits"
 REFERENCE = Path(__file__).parent / "validation/reference"
 YIELD_STRESS, CONSISTENCY = "bodies.0.material.yield_stress", "bodies.0.material.consistency"
-VISCOSITY = "bodies.0.material.viscosity"
 
 
 def test_the_viscosity_of_a_block_that_flows_apart():
-    case = copy.deepcopy(CASE) | {"until": 0.2}
-    truth = copy.deepcopy(case)
-    truth["bodies"][0]["material"]["viscosity"] = 300
-    history = mpmkit.run(mpmkit.parse_case(truth))
-    measured = [
-        {
-            "variable": "spread_diameter",
-            "time": time,
-            "value": float(history.spread_diameter.interp(time=time)),
-        }
-        for time in (0.1, 0.2)
-    ]
-    fit = parse_fit(
-        {
-            "tests": {
-                "block": {
-                    "case": case,
-                    "measurements": [one | {"relative_uncertainty": 0.005} for one in measured],
-                    "stages": [{}],
-                    "model_error": 0,
-                }
-            },
-            "parameters": {VISCOSITY: {"low": 100, "high": 2000}},
-        }
-    )
-    found = mpmkit.fit(fit, executor=Now()).parameters[VISCOSITY]
+    found = mpmkit.fit(parse_fit(block_of(300)), executor=Now()).parameters[VISCOSITY]
     assert found.value == pytest.approx(300, rel=0.03)
     assert found.low < 300 < found.high
     assert found.identifiable

@@ -4,7 +4,9 @@ import json
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from wall_case import ABSENT, changed
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.forewarnings import forewarnings
@@ -134,6 +136,37 @@ def test_what_rests_on_its_floor_does_not_hang():
     assert said(scene(resting, faces={"x_min": "slip", "z_min": "slip"})) == ""
     full = scene(box([0, 0], [2, 2]), faces=dict.fromkeys(("x_min", "x_max", "z_min", "z_max"), "slip"))
     assert said(full) == ""
+
+
+def by_a_field(body):
+    """The same body with its velocity as an initial field: of a table that has this mean."""
+    v = np.array(body.pop("velocity"), dtype=float)
+    table = {"kind": "table", "axis": "z", "places": [0, 4], "values": [v.tolist(), v.tolist()]}
+    return body | {"initial": {"velocity": table}}
+
+
+def test_a_velocity_that_is_an_initial_field_is_known_as_the_key_is():
+    up = by_a_field(BLOCK | {"velocity": [0, 3.0]})
+    assert "after about 0.75 s" in said(scene(up))
+    assert said(scene(up, until=0.7)) == ""
+    leaving = by_a_field(box([0, 0], [0.5, 0.5]) | {"velocity": [1.0, 0]})
+    assert "its velocity takes it away" in said(scene(leaving, faces={"x_min": "symmetry", "z_min": "slip"}))
+    first, second, gravity = TWO["thrown at each other"]
+    thrown = by_a_field(dict(first)), by_a_field(dict(second))
+    assert "will touch" in said(scene(*thrown, faces=FLOOR, gravity=gravity))
+    apart = (
+        by_a_field(dict(first) | {"velocity": [-0.1, 0]}),
+        by_a_field(dict(second) | {"velocity": [0.1, 0]}),
+    )
+    assert said(scene(*apart, faces=FLOOR, gravity=gravity)) == ""
+
+
+def test_a_wall_with_sides_that_overlap_is_said():
+    """Weights reach one and a half cells into a wall: with two sides, it needs three cells."""
+    thickness = "walls.mould.surface.thickness"
+    thin, enough, solid = (parse_case(changed(thickness, value)) for value in (0.058, 0.06, ABSENT))
+    assert "walls.mould is 2.9 cells thick" in said(thin)
+    assert "cells thick" not in said(enough) + said(solid)
 
 
 # --- Bodies that touch

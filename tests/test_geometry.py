@@ -7,17 +7,14 @@ import math
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.box import Box
+from mpmkit_plugins.body_shapes.sphere import Sphere
 from solids import BALL, BALL_2D, BLOCK, CONE, FUNNEL, HOPPER, PLANE, RADIAL, RING, ROD, SOLID, fill
 
-from mpmkit.geometry import (
-    Box,
-    Sphere,
-    expected_count,
-    sample,
-)
+from mpmkit.geometry import expected_count, sample
 
-HOLLOW = Sphere(kind="sphere", centre=[0, 0, 0.1], radius=0.1, inner_radius=0.05)
-HOLLOW_2D = Sphere(kind="sphere", centre=[0, 0.1], radius=0.1, inner_radius=0.05)
+HOLLOW = Sphere(centre=[0, 0, 0.1], radius=0.1, inner_radius=0.05)
+HOLLOW_2D = Sphere(centre=[0, 0.1], radius=0.1, inner_radius=0.05)
 
 EXACT = [
     (CONE, SOLID, math.pi * 0.3 / 3 * (0.01 + 0.005 + 0.0025)),
@@ -40,7 +37,7 @@ EXACT = [
     (HOPPER, SOLID, 0.15 * (0.05 * 0.2 + 0.3 * 0.15)),
 ]
 each = pytest.mark.parametrize(
-    ("shape", "space", "volume"), EXACT, ids=[f"{shape.kind}-{space.name}" for shape, space, _ in EXACT]
+    ("shape", "space", "volume"), EXACT, ids=[f"{shape.name}-{space.name}" for shape, space, _ in EXACT]
 )
 
 
@@ -85,7 +82,7 @@ def test_particles_have_the_exact_total_and_expected_count(shape, space, volume)
 
 def test_particles_stand_on_the_lattice():
     particles = sample(
-        Box(kind="box", lower=[0, 0], upper=[0.2, 0.1]),
+        Box(lower=[0, 0], upper=[0.2, 0.1]),
         PLANE,
         origin=[-0.3, 0.0],
         cell_size=0.1,
@@ -100,13 +97,13 @@ def test_particles_stand_on_the_lattice():
 @pytest.mark.parametrize("origin", [0.0, -0.3, -7.77, 0.1 + 0.2 - 0.3])
 @pytest.mark.parametrize("per_axis", [1, 2, 3])
 def test_a_box_of_whole_cells_is_filled_wholly(origin, per_axis):
-    box = Box(kind="box", lower=[0, 0], upper=[0.1, 0.07])
+    box = Box(lower=[0, 0], upper=[0.1, 0.07])
     assert len(fill(box, PLANE, 0.01, per_axis, origin=origin).volume) == 70 * per_axis**2
 
 
 @pytest.mark.parametrize("origin", [0.0, -0.3, -7.77])
 def test_points_on_the_surface_are_inside_whatever_the_rounding(origin):
-    box = Box(kind="box", lower=[0.005, 0.005], upper=[0.105, 0.075])
+    box = Box(lower=[0.005, 0.005], upper=[0.105, 0.075])
     assert len(fill(box, PLANE, 0.01, 1, origin=origin).volume) == 11 * 8
 
 
@@ -118,7 +115,7 @@ def test_the_seeds_cone_has_the_published_number_of_particles():
     assert len(fill(CONE, RADIAL, 0.005).volume) == 3_600
 
 
-@pytest.mark.parametrize("shape", [CONE, ROD, BALL], ids=lambda shape: shape.kind)
+@pytest.mark.parametrize("shape", [CONE, ROD, BALL], ids=lambda shape: shape.name)
 @pytest.mark.parametrize("per_axis", [1, 2, 3])
 def test_a_quarter_has_a_quarter_of_the_mass(shape, per_axis):
     all_of_it = fill(shape, SOLID, 0.02, per_axis, origin=-0.4)
@@ -151,7 +148,7 @@ FACES = {"a lattice plane": 0.03, "a sliver": 0.0302, "a quarter": 0.03125, "hal
 @pytest.mark.parametrize(("per_axis", "least", "most"), [(1, 0.5, 1.0), (2, 0.75, 1.5)])
 def test_the_boxes_of_a_block_tile_it_wherever_its_faces_are(space, start, end, per_axis, least, most):
     """Without a factor of volume: no slivers, none wider than a cell, side by side, from face to face."""
-    block = Box(kind="box", lower=[start] * space.dim, upper=[*[0.02 + start] * (space.dim - 1), end])
+    block = Box(lower=[start] * space.dim, upper=[*[0.02 + start] * (space.dim - 1), end])
     particles = fill(block, space, per_axis=per_axis)
     low, high = particles.position - particles.half_size, particles.position + particles.half_size
     np.testing.assert_allclose(low.min(axis=0), block.lower, atol=1e-16)
@@ -187,22 +184,22 @@ def test_parts_of_a_shape_add_up_to_the_points_in_them(shape, space, volume):
     for above in itertools.product((False, True), repeat=space.dim):
         low, high = np.where(above, place, lower), np.where(above, upper, place)
         inside = ((points >= low) & (points <= high)).all(axis=1)
-        found = shape.volume_between(low, high, space)
+        found = shape.part(low, high, space)
         assert found == pytest.approx(weight[inside].sum(), abs=0.005 * volume)
-    assert shape.volume_between(lower - 1, upper + 1, space) == shape.volume(space)
-    assert shape.volume_between(upper + 1, upper + 2, space) == 0
+    assert shape.part(lower - 1, upper + 1, space) == shape.volume(space)
+    assert shape.part(upper + 1, upper + 2, space) == 0
 
 
 def test_parts_of_round_bodies_are_exact():
     """A cap of a sphere, a segment of a cylinder, and a ring of a cone."""
     big = np.array([1.0, 1.0, 1.0])
-    cap = BALL.volume_between(np.array([0.04, -1, -1]), big, SOLID)
+    cap = BALL.part(np.array([0.04, -1, -1]), big, SOLID)
     assert cap == pytest.approx(math.pi * 0.06**2 * (0.3 - 0.06) / 3, rel=1e-10)
     segment = 0.01 * math.acos(0.4) - 0.04 * math.sqrt(0.01 - 0.04**2)
-    assert ROD.volume_between(np.array([0.04, -1, -1]), big, SOLID) == pytest.approx(0.2 * segment, rel=1e-12)
+    assert ROD.part(np.array([0.04, -1, -1]), big, SOLID) == pytest.approx(0.2 * segment, rel=1e-12)
     # Above r = 0.07 the cone's wall reaches to z = 0.18.
     ring = math.pi * 0.18 / 3 * (0.01 + 0.007 + 0.0049) - math.pi * 0.0049 * 0.18
-    assert CONE.volume_between(np.array([0.07, 0]), big[:2], RADIAL) == pytest.approx(ring, rel=1e-12)
+    assert CONE.part(np.array([0.07, 0]), big[:2], RADIAL) == pytest.approx(ring, rel=1e-12)
 
 
 @each
@@ -213,7 +210,7 @@ def test_a_body_cut_off_centre_has_the_volume_of_what_is_left(shape, space, volu
         lower, upper = np.full(space.dim, -1.0), np.full(space.dim, 1.0)
         lower[axis] = place
         part = fill(shape, space, keep=(lower, upper)).volume.sum()
-        assert part == pytest.approx(shape.volume_between(lower, upper, space), rel=1e-12)
+        assert part == pytest.approx(shape.part(lower, upper, space), rel=1e-12)
         upper[axis], lower[axis] = place, -1.0
         rest = fill(shape, space, keep=(lower, upper)).volume.sum()
         assert part + rest == pytest.approx(volume, rel=1e-9)

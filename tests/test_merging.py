@@ -22,7 +22,7 @@ class Aged(installed().of_kind("law")["bingham-evp"]):
 
 
 def aged(space="plane-strain"):
-    """A scene of a law with a state, every field of it at random, but for what belongs together."""
+    """A scene of a law with a state, every field random, except fields that depend on each other."""
     found = [entry for entries in installed().plugins.values() for entry in entries.values()]
     registry = Registry([*found, Registered("law", Aged, "tests", "1", "aged")], [])
     material = FLUID | {"law": "aged"}

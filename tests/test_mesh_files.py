@@ -9,12 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.mesh import Mesh
 from solids import BLOCK_QUADS, CUBE, CUBE_FACES, SOLID, icosphere, text, write
 
 from mpmkit.errors import CaseError
-from mpmkit.geometry import (
-    Mesh,
-)
 
 
 def obj(corners, faces, line="f {} {} {}"):
@@ -70,21 +68,21 @@ GOOD = {
 @pytest.mark.parametrize("name", GOOD)
 def test_files_as_programs_write_them_are_read(tmp_path, name):
     pytest.importorskip("igl")
-    mesh = Mesh(kind="mesh", file=text(tmp_path / name, GOOD[name]))
+    mesh = Mesh(file=text(tmp_path / name, GOOD[name]))
     assert mesh.volume(SOLID) == pytest.approx(0.001, rel=1e-6)
     np.testing.assert_allclose(mesh.bounds(SOLID), [[0, 0, 0], [0.1, 0.1, 0.1]], atol=1e-8)
 
 
 def test_axes_of_a_ply_file_go_by_their_names(tmp_path):
     pytest.importorskip("igl")
-    mesh = Mesh(kind="mesh", file=text(tmp_path / "zyx.ply", ply(["z", "y", "x"], CUBE * [3, 2, 1])))
+    mesh = Mesh(file=text(tmp_path / "zyx.ply", ply(["z", "y", "x"], CUBE * [3, 2, 1])))
     np.testing.assert_allclose(mesh.bounds(SOLID)[1], [0.1, 0.2, 0.3], rtol=1e-6)
 
 
 def test_relative_corners_count_from_the_face_that_names_them(tmp_path):
     pytest.importorskip("igl")
     cubes = obj(CUBE, CUBE_FACES - 9) + obj(CUBE + 1, CUBE_FACES - 9)
-    mesh = Mesh(kind="mesh", file=text(tmp_path / "two.obj", cubes))
+    mesh = Mesh(file=text(tmp_path / "two.obj", cubes))
     assert mesh.volume(SOLID) == pytest.approx(0.002, rel=1e-9)
     assert mesh.contains(CUBE.mean(axis=0)[None] + [[0.0], [1.0]], SOLID).all()
 
@@ -97,7 +95,7 @@ def test_polygons_of_more_than_four_corners_are_not_dropped(tmp_path):
     corners = np.concatenate([CUBE, ring, ring + np.array([0, 0, 0.2])])
     content = obj(corners, CUBE_FACES) + "f 9 10 11 12 13\nf 14 15 16 17 18\n"
     content += "".join(f"f {9 + i} {9 + (i + 1) % 5} {14 + (i + 1) % 5} {14 + i}\n" for i in range(5))
-    mesh = Mesh(kind="mesh", file=text(tmp_path / "prism.obj", content))
+    mesh = Mesh(file=text(tmp_path / "prism.obj", content))
     exact = 0.001 + 5 / 2 * 0.01 * math.sin(2 * math.pi / 5) * 0.2
     assert mesh.volume(SOLID) == pytest.approx(exact, rel=1e-12)
 
@@ -120,7 +118,7 @@ def test_a_damaged_file_is_told_what_is_wrong_with_it(tmp_path, name):
     pytest.importorskip("igl")
     content, words = DAMAGED[name]
     with pytest.raises(CaseError) as refused:
-        Mesh(kind="mesh", file=text(tmp_path / name, content)).volume(SOLID)
+        Mesh(file=text(tmp_path / name, content)).volume(SOLID)
     assert name in str(refused.value)
     assert words in str(refused.value)
 
@@ -140,14 +138,14 @@ def test_a_file_cut_anywhere_gets_a_sentence(tmp_path, kind):
         part = tmp_path / f"{end}.{kind}"
         part.write_bytes(content[:end])
         with pytest.raises(CaseError, match=f"{end}.{kind}, but"):
-            Mesh(kind="mesh", file=str(part)).volume(SOLID)
+            Mesh(file=str(part)).volume(SOLID)
 
 
 def test_a_truncated_binary_file_is_called_truncated(tmp_path):
     content = Path(write(tmp_path / "ball.stl", *icosphere(0.1, 1))).read_bytes()
     (tmp_path / "part.stl").write_bytes(content[:-30])
     with pytest.raises(CaseError, match=r"part\.stl, but it is truncated"):
-        Mesh(kind="mesh", file=str(tmp_path / "part.stl")).volume(SOLID)
+        Mesh(file=str(tmp_path / "part.stl")).volume(SOLID)
 
 
 def test_cells_that_are_no_part_of_a_surface_are_refused_by_name(tmp_path):
@@ -158,9 +156,9 @@ def test_cells_that_are_no_part_of_a_surface_are_refused_by_name(tmp_path):
     with pytest.raises(
         CaseError, match=r"solid\.vtu, but it has cells of the kind 'tetra', which are not used"
     ):
-        Mesh(kind="mesh", file=str(tmp_path / "solid.vtu")).volume(SOLID)
+        Mesh(file=str(tmp_path / "solid.vtu")).volume(SOLID)
     meshio.Mesh(CUBE, [("line", np.array([[0, 1]])), cells[0]]).write(tmp_path / "lines.vtu")
-    assert Mesh(kind="mesh", file=str(tmp_path / "lines.vtu")).volume(SOLID) == pytest.approx(0.001)
+    assert Mesh(file=str(tmp_path / "lines.vtu")).volume(SOLID) == pytest.approx(0.001)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
@@ -169,14 +167,14 @@ def test_a_pipe_or_a_device_is_refused_at_once(tmp_path):
     (tmp_path / "link.stl").symlink_to("/dev/zero")
     for name in ("pipe.stl", "link.stl"):
         with pytest.raises(CaseError, match=f"{name}, but that is a pipe or a device; it must be a file"):
-            Mesh(kind="mesh", file=str(tmp_path / name)).volume(SOLID)
+            Mesh(file=str(tmp_path / name)).volume(SOLID)
 
 
 def test_a_mesh_has_a_largest_size(tmp_path):
     with open(tmp_path / "huge.stl", "wb") as file:
         file.truncate(2**30 + 1)  # a hole: it takes no room
     with pytest.raises(CaseError, match=r"huge\.stl, but it has 1 GiB; it may have at most 1 GiB"):
-        Mesh(kind="mesh", file=str(tmp_path / "huge.stl")).volume(SOLID)
+        Mesh(file=str(tmp_path / "huge.stl")).volume(SOLID)
 
 
 @pytest.mark.parametrize("library", ["igl", "trimesh"])
@@ -186,4 +184,4 @@ def test_without_its_libraries_a_mesh_says_what_to_install(tmp_path, monkeypatch
     with pytest.raises(
         CaseError, match=r"pip install libigl trimesh, or pip install '\.\[mesh\]' in a clone"
     ):
-        Mesh(kind="mesh", file=file).volume(SOLID)
+        Mesh(file=file).volume(SOLID)

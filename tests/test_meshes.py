@@ -7,19 +7,17 @@ import os
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.mesh import Mesh
 from solids import BALL, BLOCK, BLOCK_QUADS, CUBE, CUBE_FACES, SOLID, fill, icosphere, text, write
 
 from mpmkit.errors import CaseError
-from mpmkit.geometry import (
-    Mesh,
-)
 
 
 @pytest.mark.parametrize("name", ["ball.stl", "ball.obj", "ball.ply"])
 def test_a_mesh_is_filled_as_the_sphere_that_it_resembles(tmp_path, name):
     vertices, faces = icosphere(100.0)
-    mesh = Mesh(kind="mesh", file=write(tmp_path / name, vertices, faces), scale=0.001, translate=[0, 0, 0.1])
-    mesh.check(SOLID)
+    mesh = Mesh(file=write(tmp_path / name, vertices, faces), scale=0.001, translate=[0, 0, 0.1])
+    assert mesh.problem(SOLID) is None
     assert mesh.volume(SOLID) == pytest.approx(BALL.volume(SOLID), rel=5e-3)
     np.testing.assert_allclose(mesh.bounds(SOLID), BALL.bounds(SOLID), atol=1e-6)
     particles, reference = fill(mesh, SOLID), fill(BALL, SOLID)
@@ -42,7 +40,7 @@ def test_quadrilaterals_are_split_and_normals_turned(tmp_path, turned):
     for number, face in enumerate(BLOCK_QUADS + 1):
         lines.append("f " + " ".join(map(str, face[::-1] if number in turned else face)))
     (tmp_path / "block.obj").write_text("\n".join(lines) + "\n")
-    mesh = Mesh(kind="mesh", file=str(tmp_path / "block.obj"))
+    mesh = Mesh(file=str(tmp_path / "block.obj"))
     assert mesh.volume(SOLID) == pytest.approx(0.006, rel=1e-12)
     for shift in (0.0, 0.0025):  # the second puts lattice points on the faces: inside, as for the box
         np.testing.assert_array_equal(
@@ -56,7 +54,7 @@ def test_a_shell_within_another_is_a_cavity(tmp_path, inward):
     vertices = np.concatenate([outer, outer / 2, outer / 4 + [1, 0, 0]])
     hole = faces[:, ::-1] if inward else faces
     shells = np.concatenate([faces, hole + len(outer), faces[:, ::-1] + 2 * len(outer)])
-    mesh = Mesh(kind="mesh", file=write(tmp_path / "hollow.stl", vertices, shells))
+    mesh = Mesh(file=write(tmp_path / "hollow.stl", vertices, shells))
     ball = 4 / 3 * math.pi * 0.001
     assert mesh.volume(SOLID) == pytest.approx(ball * (1 - 1 / 8 + 1 / 64), rel=0.02)
     points = np.array([[0, 0, 0], [0.07, 0, 0], [0.5, 0, 0], [1, 0, 0]])
@@ -67,7 +65,7 @@ def test_a_shell_within_another_is_a_cavity(tmp_path, inward):
 def test_a_point_on_a_meshs_surface_is_inside_and_one_just_off_it_is_not(tmp_path, far):
     trimesh = pytest.importorskip("trimesh")
     file = write(tmp_path / "ball.ply", *icosphere(1.0, 3))
-    mesh = Mesh(kind="mesh", file=file, translate=[far, far, far])
+    mesh = Mesh(file=file, translate=[far, far, far])
     ball = trimesh.load(file)
     points, triangles = trimesh.sample.sample_surface(ball, 2000, seed=1)
     for off, inside in {-4e-6: True, -1e-6: True, 1e-6: True, 4e-6: False, 1e-3: False}.items():
@@ -95,7 +93,7 @@ def test_bad_meshes_are_refused_by_name(tmp_path):
         str(tmp_path): "a folder; it must be a file",
     }.items():
         with pytest.raises(CaseError, match=words) as refused:
-            Mesh(kind="mesh", file=file).volume(SOLID)
+            Mesh(file=file).volume(SOLID)
         assert file in str(refused.value)
 
 
@@ -118,7 +116,7 @@ OVERLAPPING = {
 @pytest.mark.parametrize("scale", [1.0, 1e-3])
 def test_shells_that_overlap_are_refused(tmp_path, surface, scale):
     """Their masses would be added, or one subtracted from the other as if it were a cavity."""
-    mesh = Mesh(kind="mesh", file=write(tmp_path / "cubes.ply", *surface), scale=scale)
+    mesh = Mesh(file=write(tmp_path / "cubes.ply", *surface), scale=scale)
     with pytest.raises(
         CaseError, match=r"cubes\.ply, but its surface crosses itself, or shells of it overlap, near"
     ):
@@ -129,11 +127,11 @@ def test_a_surface_that_crosses_itself_is_refused(tmp_path):
     """A block of which one end is turned over: its walls cross half way."""
     corners = BLOCK_CORNERS.copy()
     corners[[1, 3, 5, 7]] = corners[[3, 1, 7, 5]]
-    mesh = Mesh(kind="mesh", file=write(tmp_path / "bow.ply", corners, CUBE_FACES))
+    mesh = Mesh(file=write(tmp_path / "bow.ply", corners, CUBE_FACES))
     with pytest.raises(CaseError, match="crosses itself"):
         mesh.volume(SOLID)
     corners[[1, 5], 1] *= 1.5  # so that the two halves do not cancel
-    mesh = Mesh(kind="mesh", file=write(tmp_path / "bow_tie.ply", corners, CUBE_FACES))
+    mesh = Mesh(file=write(tmp_path / "bow_tie.ply", corners, CUBE_FACES))
     with pytest.raises(CaseError, match="crosses itself"):
         mesh.volume(SOLID)
 
@@ -141,11 +139,11 @@ def test_a_surface_that_crosses_itself_is_refused(tmp_path):
 @pytest.mark.parametrize("shift", [[0.1, 0.03, 0.02], [0.1001, 0, 0], [0.3, 0, 0]])
 def test_shells_that_touch_or_stand_apart_are_added(tmp_path, shift):
     file = write(tmp_path / "cubes.ply", *shells((1, [0, 0, 0]), (1, shift)))
-    assert Mesh(kind="mesh", file=file).volume(SOLID) == pytest.approx(0.002, rel=1e-6)
+    assert Mesh(file=file).volume(SOLID) == pytest.approx(0.002, rel=1e-6)
 
 
 def test_a_part_of_a_mesh_is_exact(tmp_path):
-    mesh = Mesh(kind="mesh", file=write(tmp_path / "block.ply", BLOCK_CORNERS, CUBE_FACES))
+    mesh = Mesh(file=write(tmp_path / "block.ply", BLOCK_CORNERS, CUBE_FACES))
     low, high = np.array([0.013, 0.0, 0.07]), np.array([0.1, 0.13, 0.21])
     assert mesh.volume_between(low, high, SOLID) == pytest.approx(np.prod(high - low), rel=1e-6)
     part = fill(mesh, SOLID, keep=(np.array([-1, 0.03, -1]), np.ones(3)))
@@ -154,7 +152,7 @@ def test_a_part_of_a_mesh_is_exact(tmp_path):
 
 def test_a_rewritten_mesh_is_read_again(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    mesh = Mesh(kind="mesh", file="ball.stl")
+    mesh = Mesh(file="ball.stl")
     for number, radius in enumerate((1.0, 2.0)):
         write(tmp_path / "ball.stl", *icosphere(radius))
         os.utime("ball.stl", ns=(number, number))

@@ -159,7 +159,7 @@ class TestRest:
         go(300)
         assert milestones.at_rest_since is None
         go(700)
-        # In h/U = 0.1 s it may go a 500th of 0.1 m; it is looked at every 0.02 s.
+        # In h/U = 0.1 s it may go a 500th of 0.1 m; it is checked every 0.02 s.
         slow = np.log(2.5e-3 * (1 - np.exp(-0.2)) / 2e-4) / 2
         assert milestones.at_rest_since == pytest.approx(slow, abs=0.06)
 

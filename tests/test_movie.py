@@ -175,7 +175,7 @@ def test_the_command_writes_beside_the_report_and_a_new_run_clears_it(run, tmp_p
     assert movie(found) == 0
     path = found / "report" / "movie.gif"
     assert capsys.readouterr().out == f"{path}\n"
-    assert movie(found) == 0  # as a picture of the report, it is drawn anew
+    assert movie(found) == 0  # like the pictures of the report, it is replaced
     RunDirectory(found, overwrite=True).claim()
     assert not path.exists()
 

@@ -48,6 +48,7 @@ def written(tmp_path_factory):
     return distributions, done.stdout + done.stderr
 
 
+@pytest.mark.slow  # continuous integration runs the tests of every kind, each in its own folder
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_written_passes_its_own_tests(kind, written):
     distributions, said = written

@@ -292,7 +292,7 @@ def test_friction_never_turns_the_slip_round():
     for i in range(3):
         records[3 * i, 1:3] = slip[i], into[i]
         records[3 * i, CONTACT] = TOUCHED << 1
-    behind = np.array([[k + 1, k + 2, k] for k in (0, 3, 6)])  # ghosts and images that nobody asks for
+    behind = np.array([[k + 1, k + 2, k] for k in (0, 3, 6)])  # ghosts and images that are not used
     plane_first = np.array([0, 0, 0, 0, 3, 3, 3])
     counted = np.zeros((3, 2)), 0.1, np.zeros((3, NODE)), False, np.zeros((4, 4)), np.zeros((4, 4))
     nodes.solve_momentum(records, *rows((3, 3, 1)), faces, behind, plane_first, friction, *counted, 1.0)

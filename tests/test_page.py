@@ -161,6 +161,16 @@ def test_only_a_guard_makes_a_page_warn_of_the_last_state(slump, tmp_path, why):
     assert "do not trust" not in said
 
 
+def test_a_run_that_was_interrupted_before_its_first_step_has_not_moved(slump, tmp_path):
+    for name in ("case.json", "history.nc", "flow.npz"):
+        (tmp_path / name).write_bytes((slump / name).read_bytes())
+    summary = json.loads((slump / "summary.json").read_text())
+    changed = {"stopped_because": "interrupted", "simulated_time": 0.0, "at_rest_since": None}
+    (tmp_path / "summary.json").write_text(json.dumps(summary | changed))
+    text = text_of(page_of(tmp_path))
+    assert "The run was interrupted at t = 0 s. The material had not moved yet." in text
+
+
 def test_a_run_that_a_guard_stopped_has_a_page_that_says_so(tmp_path, monkeypatch):
     advance = Simulation.advance
 

@@ -17,7 +17,7 @@ from mpmkit.report.section import lengths_of
 
 
 class Ageing(ConstitutiveLaw):
-    """Without a stress but for 3 Pa of shear; its yield stress grows with its age."""
+    """A law whose stress is 3 Pa of shear, and whose yield stress grows with its age."""
 
     name = "ageing"
     api_version = 1

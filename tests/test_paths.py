@@ -23,7 +23,7 @@ def home(tmp_path, monkeypatch):
     home, here = tmp_path / "home", tmp_path / "here"
     home.mkdir()
     here.mkdir()
-    # Caches of compiled code and of fonts stay where they are: they take long to make anew.
+    # Caches of compiled code and of fonts stay where they are: making them again takes long.
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_root().parent))
     monkeypatch.setenv("MPLCONFIGDIR", matplotlib.get_configdir())
     monkeypatch.setenv("HOME", str(home))
@@ -31,7 +31,7 @@ def home(tmp_path, monkeypatch):
     monkeypatch.chdir(here)
     (home / "tiny.json").write_text(json.dumps(CASE | {"until": 0.002}), encoding="utf-8")
     (home / "s.json").write_text(json.dumps({"case": "tiny.json", "members": {"a": {}}}), encoding="utf-8")
-    monkeypatch.setattr("mpmkit.cli.study._cluster", lambda address: nullcontext(Now()))
+    monkeypatch.setattr("mpmkit.cli.many_runs.ManyRuns.cluster", lambda how: nullcontext(Now()))
     yield home
     assert list(here.iterdir()) == []
 

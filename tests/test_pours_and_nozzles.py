@@ -9,6 +9,7 @@ import pytest
 
 from mpmkit.case import parse_case
 from mpmkit.errors import CaseError
+from mpmkit.plan import cheaper_models, plan
 from mpmkit.registry import installed
 from mpmkit.solver.ledger import IN, REST
 from mpmkit.solver.simulation import Simulation
@@ -108,6 +109,48 @@ def test_gcode_and_a_table_are_the_same_path():
     assert table.spell(1, 1) == pytest.approx((0, 1.2))
 
 
+HALF = {
+    "space": "3d",
+    "until": 1.0,
+    "grid": {
+        "cell_size": 0.01,
+        "domain": {"x": [0, 0.2], "y": [0, 0.05], "z": [0, 0.04]},
+        "faces": {"z_min": "stick", "y_min": "symmetry"},
+    },
+    "sources": {
+        "nozzle": {
+            "kind": "nozzle",
+            "radius": WIDTH / 2,
+            "points": [[0.03, 0, HEIGHT], [0.15, 0, HEIGHT]],
+            "speeds": [SPEED],
+            "fluxes": [1e-5],
+            "material": MORTAR,
+        }
+    },
+    "output": {"report": False},
+}
+"""Half of a filament."""
+
+
+def test_a_nozzle_moves_along_a_plane_of_symmetry_but_not_off_it():
+    simulation = Simulation(case(HALF))
+    assert simulation.case.mouth_area("nozzle") == pytest.approx(np.pi * (WIDTH / 2) ** 2 / 2)
+    advanced(simulation, 0.1)
+    row = DENSITY * 0.005 * np.pi * (WIDTH / 2) ** 2 / 2
+    assert simulation.measured()["mass_in"] == pytest.approx(DENSITY * 1e-5 * simulation.time, abs=row)
+    with pytest.raises(CaseError, match="the plane of symmetry y_min cuts its mouth, which moves along y"):
+        case(HALF, points=[[0.03, 0, HEIGHT], [0.15, 0.02, HEIGHT]])
+
+
+@pytest.mark.parametrize("sound_speed", [8, {"mach": 0.1}])
+def test_the_cost_of_a_scene_that_begins_empty_is_known(sound_speed):
+    planned = plan(case(POUR, material=MORTAR | {"sound_speed": sound_speed}))
+    whole = 0.1 / DENSITY / (np.pi * 0.02**2) / 0.005 * 4
+    assert planned["particles"] == 0
+    assert planned["particles_at_end"] == pytest.approx(whole, rel=0.1)
+    assert 0 < planned["expected_seconds"] < 600
+
+
 def test_a_filament_diameter_makes_a_volume_of_e():
     lines = [line.replace("E2400000", "E100") for line in GCODE]
     wire = NOZZLE.model_validate({"radius": 0.01, "gcode": lines, "filament_diameter": 0.1})
@@ -122,7 +165,7 @@ def gcode(*lines):
     ("changes", "sentence"),
     [
         ({"points": [[0.03, 0.02], [0.3, 0.02]], "speeds": [0.5]}, "its mouth reaches x = 0."),
-        ({"speeds": [0.1, 0.1]}, "speeds has 2 entries; 2 points have 1 ways between them"),
+        ({"speeds": [0.1, 0.1]}, "speeds has 2 entries; 2 points have 1 moves between them"),
         ({"fluxes": [0.0]}, "its path brings in no material: no flux, or no E, is above 0"),
         ({"gcode": GCODE}, "it has points and gcode; it must have one of them"),
         (gcode("G0 X0 Y0 Z20 F60", "G2 X10 Y10"), "only G0, G1, G90 and G92 E are known"),
@@ -135,3 +178,15 @@ def test_what_is_wrong_with_a_path_is_said(changes, sentence):
     with pytest.raises(CaseError) as error:
         case(PRINTED, **changes)
     assert sentence in str(error.value)
+
+
+def test_a_regularised_law_that_is_poured_is_told_what_it_costs_and_what_to_write():
+    """At rest its viscosity is τ0 m = 1 MPa s, so that the viscous limit, 3/8 ρ Δx²/μ, is right."""
+    regularised = {key: value for key, value in MORTAR.items() if key != "shear_modulus"} | {"law": "bingham"}
+    poured = case(POUR, material=regularised)
+    assert Simulation(poured).limits.viscous == pytest.approx(0.375 * DENSITY * 0.01**2 / 1e6, rel=1e-3)
+    (exact,) = (model for model in cheaper_models(poured) if model.name == "exact yield")
+    law = exact.case.sources["jug"].material.constitutive_law
+    assert (law.name, law.yield_stress, law.plastic_viscosity) == ("bingham-evp", 1000, 2)
+    assert exact.options[0].startswith("sources.jug.material=")
+    assert plan(exact.case)["limited_by"] == "acoustic"

@@ -1,4 +1,4 @@
-"""mpmkit as a guest: threads, processes, environment and encodings of whoever calls it."""
+"""mpmkit as a guest: threads, processes, environment and encodings of the calling program."""
 
 from __future__ import annotations
 

@@ -265,3 +265,8 @@ def test_a_case_that_may_end_earlier_says_so():
         CASE | {"name": "tiny", "until": {"at_most": 3.0, "max_speed": {"at_most": 1e-4}}}
     )._repr_html_()
     assert "at the latest at t = 3 s" in shown
+
+
+def test_completion_in_a_notebook_knows_the_public_names():
+    """They are loaded at their first use, so that Python itself would not list them."""
+    assert set(mpmkit.__all__) <= set(dir(mpmkit))

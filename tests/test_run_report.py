@@ -69,4 +69,4 @@ def test_a_report_that_fails_is_a_warning(tmp_path, capsys, monkeypatch, error, 
     assert "warning: the report was not drawn: " in said
     assert str(error) in said
     assert "Traceback" not in said
-    assert "Traceback" in (tmp_path / "run" / "run.log").read_text()  # for whoever is to mend it
+    assert "Traceback" in (tmp_path / "run" / "run.log").read_text()  # for the person who must repair it

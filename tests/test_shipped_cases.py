@@ -85,6 +85,9 @@ def test_init_writes_the_fine_variant(tmp_path):
     ("arguments", "code", "words"),
     [
         (["slumptest"], 2, "there is no shipped case \"slumptest\"; did you mean 'slump_test'?"),
+        (["mini_cone"], 2,
+         "\"mini_cone\"; did you mean 'mini_cone_haegermann' or 'mini_cone_kantro'? mpmkit cases lists them"),
+        (["abrasion"], 2, 'there is no shipped case "abrasion"; mpmkit cases lists them'),
         (["slump_test", "--set", "top_radius=0.2"], 2,
          "parameters.top_radius (radius of the mould at its top) is 0.2 m; it must be at most 0.1 m, which "
          "is bottom_radius"),

@@ -12,7 +12,7 @@ from blocks import Blocks
 import mpmkit
 from mpmkit.kernels import sort
 from mpmkit.kernels.compile import CHUNK
-from mpmkit.kernels.scatter import LARGEST_SUPPORT, PAIR, scatter_pairs
+from mpmkit.kernels.scatter import LARGEST_SUPPORT, PAIR, scatter_pairs, scatter_scalar
 from mpmkit.kernels.sort import BLOCK_WIDTH
 from mpmkit.registry import installed
 from mpmkit.solver.sorting import DRIFT, TASKS
@@ -160,6 +160,20 @@ def test_rows_of_pairs_write_to_no_node_further_on(support, dim):
     rows, nodes = slice(3, 3 + support), slice(3, 3 + LARGEST_SUPPORT)
     expected[(*[rows] * (dim - 1), nodes)] = True
     np.testing.assert_array_equal(~np.signbit(pairs), np.repeat(expected.reshape(-1, 1), PAIR, axis=1))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("support", range(2, LARGEST_SUPPORT + 1))
+def test_rows_of_numbers_write_to_no_node_further_on(support, dim):
+    """As rows of pairs."""
+    size = 9
+    base = np.full((1, dim), 3, dtype=np.int32)
+    weight, one, sums = np.ones((1, dim, support)), np.ones(1), np.full(size**dim, -0.0)
+    strides, tasks = (size ** (dim - 1), size ** (dim - 2), 1), np.array([[[0, 1]]])
+    scatter_scalar(dim, support)(sums, strides, np.zeros(dim, dtype=np.int64), tasks, base, weight, one)
+    expected = np.zeros((size,) * dim, dtype=bool)
+    expected[(*[slice(3, 3 + support)] * (dim - 1), slice(3, 3 + LARGEST_SUPPORT))] = True
+    np.testing.assert_array_equal(~np.signbit(sums), expected.ravel())
 
 
 # --- Tasks --------------------------------------------------------------------------------------------------

@@ -3,12 +3,13 @@
 import dataclasses
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mpmkit.case import parse_case
-from mpmkit.cli import main
+from mpmkit.cli import main, stability
 from mpmkit.errors import CaseError
 from mpmkit.solver.simulation import Simulation
 from mpmkit.stability import Criteria, combinations, critical_fraction
@@ -170,3 +171,13 @@ def test_the_command_prints_and_draws(tmp_path, monkeypatch, capsys):
     with pytest.raises(SystemExit) as stop:
         main(["stability", "column.json", "--order", "nothing"])
     assert stop.value.code == 2
+
+
+def test_a_long_search_reports_its_trials_and_a_short_one_does_not(monkeypatch, capsys):
+    clock = iter([0.0, 5.0, 12.0, 12.0, 15.0])
+    monkeypatch.setattr(stability, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    kept = stability._Kept("usl, flip")
+    for fraction in (0.05, 2.0, 0.316228):
+        kept(fraction, falling())
+    assert capsys.readouterr().err == "usl, flip: trial 2, at 2 of the limit, has ended\n"
+    assert list(kept.traces) == [0.05, 2.0, 0.316228]

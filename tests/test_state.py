@@ -73,7 +73,8 @@ NOT_COMPARED = {
     "Simulation": {"blaming"},  # plug-ins, and a function of this very simulation
     "SceneOperations": {"_tables"},  # memory that sorting uses as well; weight and gradient lie in it
     "Window": {"_stores", "_capacity"},  # memory, as much as was ever needed; nodes, pairs, average lie in it
-    "Stage": {"_blocks"},  # kept from one redistribution to the next, made anew where they are missing
+    # Kept from one redistribution to the next, made again if they are missing; memory of the tables.
+    "Stage": {"_blocks", "_lent"},
     # Memory of which a step reads no more rows than it has written.
     "WallNodes": {
         "_at_wall",
@@ -113,7 +114,7 @@ def is_ours(value: Any) -> bool:
 
 
 def of_run(value: Any, seen: set[int] | None = None):
-    """Every object of our own classes that can be reached, each once, but for what is made of the case."""
+    """Every object of our own classes that can be reached, each once, except those made from the case."""
     seen = set() if seen is None else seen
     if isinstance(value, list | tuple):
         for entry in value:

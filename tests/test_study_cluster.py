@@ -136,7 +136,7 @@ def test_the_scheduler_dies_in_mid_study(here):
     assert said.splitlines()[-1].startswith(f"mpmkit: the scheduler {address} does not answer any more: ")
     assert said.rstrip().endswith(" 2 of 2 members (10000.0, 20000.0); run the same study again to continue")
     with xarray.open_dataset(here / "runs" / "s" / "results.nc") as dataset:
-        assert set(dataset.fate.values) == {""}  # nobody failed of it
+        assert set(dataset.fate.values) == {""}  # no member failed because of it
     assert not list(here.glob("runs/s/members/*/member.json"))
 
 

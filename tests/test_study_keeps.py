@@ -19,7 +19,7 @@ def here(tmp_path, monkeypatch):
     """A working directory with a tiny case, and an executor in this process."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tiny.json").write_text(json.dumps(CASE | {"until": 0.002}), encoding="utf-8")
-    monkeypatch.setattr("mpmkit.cli.study._cluster", lambda address: nullcontext(Now()))
+    monkeypatch.setattr("mpmkit.cli.many_runs.ManyRuns.cluster", lambda how: nullcontext(Now()))
     return tmp_path
 
 

@@ -94,7 +94,7 @@ def test_a_cone_as_a_mould_turns_about_its_axis():
 @pytest.mark.parametrize("spell", [{}, {"start": 0.07, "end": 0.09}], ids=["always", "for a moment"])
 @pytest.mark.parametrize("shape", ["drum", "vane"])
 def test_what_turns_is_not_symmetric_however_short_it_turns(shape, spell):
-    """Between 0 and 0.5 s a wall is looked at in nine moments, and once in each motion between them."""
+    """Between 0 and 0.5 s a wall is checked at nine times, and once in each interval between them."""
     turning = {"kind": "rotation", "point": [0.1, 0.2, 0], "axis": [0, 0, 1], "rate": 1.0} | spell
     vane = {"kind": "box", "lower": [0.0, 0.18, -0.02], "upper": [0.2, 0.22, 0.3]}
     of_vane = {"kind": "body", "shape": vane, "side": "outside"}

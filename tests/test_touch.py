@@ -63,7 +63,7 @@ def image(number, faces, axis):
 
 
 ON_AXIS = {"cpgimp": 1 / 6, "linear": 3 / 16, "cubic-splines": 185 / 768}
-"""Room of a node on the axis, Δx² turns: Σ r N/2 of two particles a cell, at r = 1/4, 3/4, …"""
+"""Room of a node on the axis, Δx² turns: Σ r N/2 of two particles per cell, at r = 1/4, 3/4, …"""
 
 
 def room_of(node, faces, on_axis):

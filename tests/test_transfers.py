@@ -8,7 +8,7 @@ from blocks import Blocks
 from pairwise import every_pair
 from tensors import symmetric
 
-from mpmkit.kernels import gather, scatter
+from mpmkit.kernels import gather, scatter, splines
 from mpmkit.kernels.scatter import NODE
 from mpmkit.kernels.vectors import LANES
 
@@ -172,6 +172,40 @@ def test_scatter_pairs(dim, radial, support):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
+@spaces
+@supports_of_averages
+def test_scatter_scalar(dim, radial, support):
+    scene = Scene(dim, support, radial)
+    start, expected = scene.rng.normal(size=scene.count + LANES), np.zeros(scene.count)
+    found = start.copy()
+    of_particles = scene.strides, scene.lower, scene.tasks, scene.base, scene.weight
+    scatter.scatter_scalar(dim, support)(found[: scene.count], *of_particles, scene.volume)
+    for pick, node in scene.corners():
+        np.add.at(expected, node, scene.volume * scene.product(pick))
+    np.testing.assert_allclose(found[: scene.count], start[: scene.count] + expected, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(found[scene.count :], start[scene.count :])
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_gather_slope_is_the_slope_of_a_quadratic_field(dim):
+    """Exactly: its average over a spline differs from it by a constant."""
+    scene = Scene(dim, 3)
+    spacing, n = 0.5, scene.n
+    place = spacing * (scene.base + 1 + scene.rng.uniform(-0.5, 0.5, (n, dim)))
+    base, weight, slope = np.zeros((n, dim), np.int32), np.zeros((n, dim, 3)), np.zeros((n, dim))
+    splines.fill_splines(place, 1 / spacing, base, weight)
+    np.testing.assert_array_equal(base, scene.base)
+    number = np.stack(np.unravel_index(np.arange(scene.count), scene.shape[:dim]), axis=1) + scene.lower
+    node = spacing * number
+    bend, along = scene.rng.normal(size=(dim, dim)), scene.rng.normal(size=dim)
+    field = np.full((scene.count + LANES, 1), np.nan)
+    field[: scene.count, 0] = np.einsum("ni,ij,nj->n", node, bend, node) + node @ along
+    splines.gather_slope(dim)(
+        field[: scene.count], scene.strides, scene.lower, base, weight, 1 / spacing, slope
+    )
+    np.testing.assert_allclose(slope, place @ (bend + bend.T) + along, rtol=0, atol=1e-10)
+
+
 def gathered(scene, grid):
     """What ``gather`` must find: ṽ, Δṽ, L (n, 3, 3) and C (n, dim, dim)."""
     n, dim = scene.n, scene.dim
@@ -226,7 +260,7 @@ def test_gather(space, support, flip, asked):
 @spaces
 @supports
 def test_gather_is_exact_for_a_uniform_and_for_a_linear_field(dim, radial, support):
-    """v = A x + c gives C = A, but for axes on which the particle barely knows a slope; uniform, C = 0."""
+    """v = A x + c gives C = A, except along axes without a usable slope; a uniform v gives C = 0."""
     scene = Scene(dim, support, radial, affine=True)
     x = CELL * (np.stack(np.indices(scene.shape[:dim]), axis=-1).reshape(-1, dim) + scene.lower)
     A, c = scene.rng.normal(size=(dim, dim)), scene.rng.normal(size=dim)

@@ -48,7 +48,7 @@ def made(base, method, function):
 
 
 def read(kind, plugin):
-    """A block on a floor with one plug-in of the tests: read, filled, and looked at."""
+    """A block on a floor with one plug-in of the tests: read, filled, and checked."""
     found = [entry for entries in installed().plugins.values() for entry in entries.values()]
     registry = Registry([*found, Registered(kind, plugin, "tests", "1", plugin.name)], [])
     of_the_tests = {"kind": plugin.name}

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from mpmkit_plugins.body_shapes.sphere import Sphere
 
-from mpmkit.geometry import Sphere, contour
+from mpmkit.geometry import contour
 from mpmkit.output import (
     Drawn,
     FrameWriter,
@@ -28,7 +29,7 @@ TIMES = (0.0, 0.1, 0.5)
 
 def disc(centre, space, rate=0.0, speed=0.0, half=False):
     """A disc or a ball as it is drawn, whole or half; it moves along the last axis, or turns about y."""
-    solid = Sphere(kind="sphere", centre=list(centre), radius=0.2).solid(SPACES[space])
+    solid = Sphere(centre=list(centre), radius=0.2).solid(SPACES[space])
     lower = np.array(centre) - [0.3, 0.0 if half else 0.3, 0.3][: len(centre)]
     points, parts = contour(solid.distance, lower, np.array(centre) + 0.31, 0.02)
     arm = points - centre

@@ -42,7 +42,7 @@ def test_same_bits_with_any_number_of_threads(contact):
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
 @pytest.mark.parametrize("stop", [17, 40, 63])
 def test_same_bits_after_a_stop(order, stop):
-    """The wall moves by several cells, and is looked for anew in between."""
+    """The wall moves by several cells, and its nodes are found again in between."""
     fast = {**SLOPE, "surface": {**SLOPE["surface"], "motion": {"kind": "velocity", "velocity": [0, 2.0]}}}
     data = scene({"slope": fast}, CONCRETE, scheme={"order": order})
     whole = advance(Simulation(mpmkit.parse_case(data)), stop)

@@ -24,6 +24,7 @@ KERNELS = {
     "averages": ("sums", "at_nodes", "at_particles"),
     "volumes": ("_update_volumes", "_follow_domains", "_treated", "_pressure", "relax_volume"),
     "law": ("_update_law",),
+    "redistribution": ("redistribute_if_due",),
 }
 """The parts of a step, and the methods that do them; the rest of a step is outside the kernels."""
 
@@ -63,7 +64,9 @@ def _timed(simulation: Simulation, name: str, threads: int, seconds: float) -> T
     for _ in range(WARM_UP):
         simulation.advance()
     particles = len(simulation.particles)
-    watch = Stopwatch(simulation.operations, simulation.operations.averager)
+    operations = simulation.operations
+    watch = Stopwatch(operations, operations.averager)
+    watch.watch(operations.stage, "redistribute_if_due")
     begin, before = clock.perf_counter(), simulation.particle_steps
     while (spent := clock.perf_counter() - begin) < seconds or simulation.particle_steps == before:
         simulation.advance()
@@ -84,14 +87,16 @@ class Stopwatch:
     def __init__(self, *owners: Any) -> None:
         self.spent: dict[str, float] = defaultdict(float)
         self._inner = [0.0]
-        self._watched = [
-            (owner, name)
-            for owner in owners
-            for name in dir(type(owner))
-            if not name.startswith("__") and callable(getattr(owner, name)) and name != "step"
-        ]
-        for owner, name in self._watched:
-            setattr(owner, name, self._timed(name, getattr(owner, name)))
+        self._watched: list[tuple[Any, str]] = []
+        for owner in owners:
+            for name in dir(type(owner)):
+                if not name.startswith("__") and callable(getattr(owner, name)) and name != "step":
+                    self.watch(owner, name)
+
+    def watch(self, owner: Any, name: str) -> None:
+        """Add up the time in this operation, too."""
+        setattr(owner, name, self._timed(name, getattr(owner, name)))
+        self._watched.append((owner, name))
 
     def remove(self) -> None:
         for owner, name in self._watched:

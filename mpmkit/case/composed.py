@@ -5,6 +5,7 @@ Parameters of third-party plug-ins are validated, documented and completed in ed
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache, reduce
 from operator import or_
 from typing import Annotated, Any, ClassVar, Literal
@@ -21,7 +22,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticKnownError
 
-from ..contracts import ConstitutiveLaw, Plugin, Source
+from ..contracts import BodyShape, ConstitutiveLaw, Plugin, Source
 from ..registry import Registry, installed
 from .consistency import check
 from .html import case_html
@@ -58,7 +59,7 @@ def _unpickled(text: str, registry: Registry | None) -> Case:
     return case_model(registry or installed()).model_validate_json(text, context=_CHECKED_BEFORE)
 
 
-def _one_of(kind: str, members: dict[str, type], key: str) -> Any:
+def _one_of(kind: str, members: Mapping[str, type], key: str) -> Any:
     """Annotation of a field that holds a plug-in of a kind; the constant at ``key`` selects it."""
 
     def tag(value: Any) -> Any:
@@ -92,9 +93,27 @@ def _choice(registry: Registry, kind: str, default: str, meaning: str) -> tuple[
     return _one_of(kind, plugins, "name"), Field(description=meaning, **preset)
 
 
-def _named(registry: Registry, kind: str) -> tuple[Any, Any]:
-    """Annotation and field of a plug-in whose name is given at ``kind``, without a default."""
-    return _one_of(kind, registry.of_kind(kind), "kind"), Wall.model_fields[kind]
+def _named(plugins: Mapping[str, type[Plugin]], kind: str) -> tuple[Any, Any]:
+    """Annotation and field of a plug-in of a wall, whose name is given at ``kind``, without a default."""
+    return _one_of(kind, plugins, "kind"), Wall.model_fields[kind]
+
+
+def _made_of(shape: Any, plugin: type[Plugin]) -> type[Plugin]:
+    """A plug-in whose parameters that are body shapes may be of every registered kind."""
+    own_fields = {
+        name: (shape, Field(default=field.default, description=field.description))
+        for name, field in plugin.model_fields.items()
+        if field.annotation is BodyShape
+    }
+    if not own_fields:
+        return plugin
+    return create_model(
+        plugin.__name__,
+        __base__=plugin,
+        __module__=plugin.__module__,
+        __doc__=plugin.__doc__,
+        **own_fields,  # type: ignore[call-overload]
+    )
 
 
 def _of_names(annotation: Any) -> Any:
@@ -140,10 +159,12 @@ def case_model(registry: Registry) -> type[Case]:
     """The model of case files for the plug-ins that are registered."""
     laws = {name: _material_model(law, registry) for name, law in registry.of_kind("law").items()}  # type: ignore[arg-type]
     material = _one_of("law", laws, "law")
+    shape = _one_of("body_shape", registry.of_kind("body_shape"), "kind")
     body = create_model(
         "Body",
         __base__=Body,
         __doc__=Body.__doc__,
+        shape=(shape, Body.model_fields["shape"]),
         material=(material, Body.model_fields["material"]),
         initial=_by_name(registry, "initial_field", Body.model_fields["initial"]),
     )
@@ -166,12 +187,13 @@ def case_model(registry: Registry) -> type[Case]:
         ),
         refinement=_choice(registry, "refinement", "none", "how the number of particles follows the flow"),
     )
+    surfaces = {name: _made_of(shape, surface) for name, surface in registry.of_kind("surface").items()}
     wall = create_model(
         "Wall",
         __base__=Wall,
         __doc__=Wall.__doc__,
-        surface=_named(registry, "surface"),
-        contact=_named(registry, "contact"),
+        surface=_named(surfaces, "surface"),
+        contact=_named(registry.of_kind("contact"), "contact"),
     )
     output = create_model(
         "OutputSettings",

@@ -24,6 +24,7 @@ from .initial_fields import check_initial_fields
 from .measurement_rules import check_measurements
 from .measurements import MEANS, means
 from .model import Case, Material
+from .shapes import check_shape
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .sources import check_inflows, check_mouths, source_columns
 from .state_variables import TAKEN, former_names, state_variables
@@ -65,10 +66,7 @@ def check(case: Case) -> None:
         check_initial_fields(where, body, case)
         _check_particles_per_cell(f"{where}.particles_per_cell", body.particles_per_cell, case)
         _check_sound_speed(f"{where}.material.sound_speed", body.material, case)
-        try:
-            body.shape.check(case.space_)
-        except ValueError as error:
-            raise ValueError(f"{where}.shape: {error}") from None
+        check_shape(f"{where}.shape", body.shape, case.space_)
         _check_inside(where, body, case)
         _check_wave_speed(f"{where}.material", body.material, case)
     for name, inflow in case.sources.items():

@@ -12,10 +12,11 @@ from itertools import combinations, islice
 
 import numpy as np
 
+from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .model import Body, Case, Material
 from .plausibility import implausible
-from .walls import wall_between
+from .walls import ROUNDING, wall_between
 
 CLOSED = ("slip", "stick", "symmetry")
 PULLING = ("symmetry",)
@@ -26,13 +27,15 @@ CONTIGUOUS = 1e-6
 """Largest gap, in cells, between two pieces of one solid; a wider gap is intended to be open."""
 ENOUGH_IN_3D = 27
 """Particles per cell, see docs/stability/long_shear.md."""
+ENOUGH_OF_A_WALL = 3.0
+"""Cells: a wall with material on both sides needs one and a half for each, as far as splines reach."""
 NOTICED = 0.1
 """Least part of gravity directed away from a wall that gives a sentence."""
 
 
 def forewarnings(case: Case) -> list[str]:
     """A sentence for each known problem of the scene, and for each implausible value."""
-    kinds = (_falls_out, _hangs, _swings_off, _touching, _few_particles, _needless, implausible)
+    kinds = (_falls_out, _hangs, _swings_off, _thin, _touching, _few_particles, _needless, implausible)
     with np.errstate(all="ignore"):  # products of the numbers of a case may overflow
         return [sentence for kind in kinds for sentence in islice(kind(case), MOST)]
 
@@ -48,7 +51,7 @@ def _few_particles(case: Case) -> Iterator[str]:
         count = math.prod(body.particles_along_axes(case.space_.dim))
         if count < ENOUGH_IN_3D and body.material.constitutive_law.uses_equation_of_state:
             yield (
-                f"{where.removesuffix('.material')} has {count} particles a cell: in three dimensions a "
+                f"{where.removesuffix('.material')} has {count} particles per cell: in three dimensions a "
                 "fluid that is sheared far flows too easily with fewer than "
                 f"{ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
                 "with 8, 0.6 % with 27); see particles_per_cell"
@@ -92,7 +95,7 @@ def _falls_out(case: Case) -> Iterator[str]:
         lower, upper = _bounds(case, body)
         ends = case.grid.domain[case.space_.axes[axis]]
         distance = float(ends[1] - upper[axis]) if g[axis] > 0 else float(lower[axis] - ends[0])
-        speed = float(_velocity(case, body)[axis] * np.sign(g[axis]))
+        speed = float(case.velocity_at_start(body)[axis] * np.sign(g[axis]))
         pull = abs(float(g[axis]))
         if _is_a_sink(case, axis, upper=bool(g[axis] > 0)):
             continue
@@ -125,7 +128,7 @@ def _hangs(case: Case) -> Iterator[str]:
                 continue
             inward = -1.0 if upwards else 1.0
             for number, body in enumerate(case.bodies):
-                moves = inward * _velocity(case, body)[axis] > 0
+                moves = inward * case.velocity_at_start(body)[axis] > 0
                 falls = inward * g[axis] > NOTICED * float(np.linalg.norm(g)) > 0
                 opposite = case.grid.faces.get(_side(case, axis, not upwards))
                 between = opposite in CLOSED and _touches(case, body, axis, not upwards)
@@ -156,6 +159,18 @@ def _swings_off(case: Case) -> Iterator[str]:
                         "pushes but does not pull, unlike in versions before 0.8; for a plane that holds it "
                         f'write "{side}": "symmetry" in grid.faces'
                     )
+
+
+def _thin(case: Case) -> Iterator[str]:
+    """Walls with material on both sides in which weights of the two sides overlap."""
+    for name, wall in case.walls.items():
+        cells = audit.placed(wall.surface, case.space_).thickness / case.grid.cell_size
+        if cells < ENOUGH_OF_A_WALL * (1 - ROUNDING):
+            yield (
+                f"walls.{name} is {cells:.2g} cells thick: the nodes in it that belong to its other side are "
+                "within reach of the material, and the pressure on it can be wrong by a tenth, or energy be "
+                f"created; make it at least {ENOUGH_OF_A_WALL:g} cells thick, or the cells smaller"
+            )
 
 
 # --- Bodies that touch
@@ -198,7 +213,7 @@ def _meet(case: Case, a: Body, b: Body) -> bool:
     """Whether two bodies are within a cell of each other, or move or fall towards each other."""
     if _gap(case, a, b) <= case.grid.cell_size:
         return bool(case.gravity_at_start.any()) or any(map(case.speed_at_start, (a, b)))
-    relative = (_velocity(case, b) - _velocity(case, a)) * case.end
+    relative = (case.velocity_at_start(b) - case.velocity_at_start(a)) * case.end
     if relative.any() and _gap(case, a, b, relative) <= case.grid.cell_size:
         return True
     if not case.gravity_at_start.any():
@@ -265,9 +280,3 @@ def _side(case: Case, axis: int, upwards: bool) -> str:
 def _bounds(case: Case, body: Body) -> tuple[np.ndarray, np.ndarray]:
     lower, upper = body.shape.bounds(case.space_)
     return np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
-
-
-def _velocity(case: Case, body: Body) -> np.ndarray:
-    """The uniform initial velocity of a body, m/s; zero for a standing wave."""
-    uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * case.space_.dim
-    return np.array(uniform, dtype=float)

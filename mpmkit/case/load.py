@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from ..errors import CaseError
-from ..geometry import FILES
 from ..registry import Registry, installed
 from ..registry.blame import blaming_plugins
 from .allowed import shown
@@ -43,7 +42,8 @@ def load_case(path: str | Path, overrides: Iterable[str] = (), registry: Registr
         CaseError: the file cannot be read, is not JSON, or is not a valid case.
         PluginStop: a plug-in that the case uses fails while it is validated.
     """
-    return parse_case(read_case(path), overrides, registry, source=str(path))
+    registry = registry or installed()
+    return parse_case(read_case(path, registry), overrides, registry, source=str(path))
 
 
 def parse_case(
@@ -99,7 +99,7 @@ def validated(model: type[M], data: Any, source: str, what: str) -> M:
         raise CaseError(f"{source}: {error}") from None
 
 
-def read_case(path: str | Path) -> dict[str, Any]:
+def read_case(path: str | Path, registry: Registry | None = None) -> dict[str, Any]:
     """The content of a case file before validation, with a name and absolute paths.
 
     Raises:
@@ -109,21 +109,20 @@ def read_case(path: str | Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise CaseError(f"{path}: a case must be a JSON object, not {shown(data)}")
     data.setdefault("name", name_from(path))
-    count_from(Path(path).parent, data)
+    count_from(Path(path).parent, data, registry)
     return data
 
 
-def count_from(folder: Path, data: dict[str, Any]) -> None:
+def count_from(folder: Path, data: dict[str, Any], registry: Registry | None = None) -> None:
     """Make relative paths of files in a case absolute; other values are not changed."""
+    shapes = (registry or installed()).of_kind("body_shape")
     bodies, walls = data.get("bodies"), data.get("walls")
     places = list(bodies) if isinstance(bodies, list) else []
     for wall in walls.values() if isinstance(walls, dict) else []:
         places.append(wall.get("surface") if isinstance(wall, dict) else None)
-    for place in places:
-        shape = place.get("shape") if isinstance(place, dict) else None
-        if not isinstance(shape, dict):
-            continue
-        for field in FILES.get(str(shape.get("kind")), ()):
+    for shape in (value for place in places if isinstance(place, dict) for value in place.values()):
+        known = shapes.get(str(shape.get("kind"))) if isinstance(shape, dict) else None
+        for field in () if known is None else known.files:  # type: ignore[attr-defined]
             if isinstance(shape.get(field), str):
                 shape[field] = str(folder.absolute() / shape[field])
 

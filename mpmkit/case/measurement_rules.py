@@ -46,6 +46,15 @@ class _Asked:
             raise ValueError(f"depth takes one place along {axes[0]}, from {low:g} to {high:g} m{also}")
         return 1.0
 
+    def width(self, *place: float) -> float:
+        axes = self._axes
+        low, high = self._case.grid.domain[axes[0]]
+        if len(axes) != 3 or len(place) != 1 or not low <= place[0] <= high:
+            raise ValueError(
+                f"width takes one place along {axes[0]}, from {low:g} to {high:g} m, in a scene in 3d"
+            )
+        return 1.0
+
     def front(self, *given: float) -> float:
         if given:
             raise ValueError("front takes nothing: write front()")

@@ -169,6 +169,8 @@ def _unusable(path: Path, name: Any, choices: list[Any], registry: Registry) -> 
     kinds = [key for key in below if key in KINDS and (anywhere or key in ("law", "equation_of_state"))]
     if path[0] == "bodies" and path[2:3] == ("initial",):
         kinds = ["initial_field"]
+    if "shape" in path[2:] and path[0] in ("bodies", "walls"):
+        kinds = ["body_shape"]
     if path[0] in BY_NAME and not kinds:  # a source has a law as well
         kinds = [BY_NAME[path[0]]]
     if path[0] == "output":

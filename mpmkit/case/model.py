@@ -16,6 +16,7 @@ from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, mo
 from ..contracts import (
     Beginning,
     BodyForce,
+    BodyShape,
     ConstitutiveLaw,
     Contact,
     EquationOfState,
@@ -33,7 +34,6 @@ from ..contracts.scale import Scale
 from ..contracts.shape import ShapeFunction
 from ..contracts.velocity import VelocityUpdate
 from ..contracts.volumetric import VolumetricTreatment
-from ..geometry import AnyShape
 from ..registry.audit import forces
 from ..registry.audit.initial_fields import initial_values, shape_of
 from ..spaces import SPACES, Space
@@ -121,7 +121,7 @@ ParticleCount = Annotated[int, Field(gt=0, le=1000)]
 class Body(Model):
     """A shape filled with a material."""
 
-    shape: AnyShape = Field(description="where the body is at the start")
+    shape: BodyShape = Field(description="where the body is at the start")
     material: Material = Field(description="what the body is made of")
     particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
         "1",
@@ -327,7 +327,7 @@ class Case(Model):
 
     @property
     def filled(self) -> list[Body | Inflow]:
-        """The bodies, then the sources: particles are numbered by it, see ``Particles.body``."""
+        """The bodies, then the sources, in the order of the numbers in ``Particles.body``."""
         return [*self.bodies, *self.sources.values()]
 
     @cached_property
@@ -438,11 +438,23 @@ class Case(Model):
         """Largest speed of a body at the start, m/s; of a field that of samples."""
         if "velocity" not in body.initial:
             return body.largest_speed
+        return float(np.linalg.norm(self.at_start(body, "velocity", self._samples(body)), axis=1).max())
+
+    def velocity_at_start(self, body: Body) -> np.ndarray:
+        """Mean velocity of a body at the start, m/s, ``(dim,)``; of a field that of samples in the body, of a
+        standing wave zero."""
+        if "velocity" not in body.initial:
+            uniform = body.velocity if isinstance(body.velocity, list) else [0.0] * self.space_.dim
+            return np.array(uniform, dtype=float)
+        places = self._samples(body)
+        inside = places[body.shape.contains(places, self.space_)]
+        return self.at_start(body, "velocity", inside if len(inside) else places).mean(axis=0)
+
+    def _samples(self, body: Body) -> np.ndarray:
+        """Places in the box around a body, m, ``(n, dim)``."""
         lower, upper = body.shape.bounds(self.space_)
         parts = np.array(list(product(np.linspace(0, 1, SAMPLES), repeat=len(lower))))
-        return float(
-            np.linalg.norm(self.at_start(body, "velocity", lower + parts * (upper - lower)), axis=1).max()
-        )
+        return lower + parts * (upper - lower)
 
     def at_start(self, body: Body, field: str, position: np.ndarray) -> np.ndarray:
         """An initial field of a body at places, m, ``(n, dim)``: ``(n, *shape)``."""

@@ -7,6 +7,7 @@ from ..contracts.version1 import deprecation
 from ..registry.audit import require_sentences
 from ..registry.blame import blaming_plugins
 from .model import Case
+from .shapes import shapes_in
 
 SCHEME = ("shape", "order", "velocity", "volumetric", "redistribution", "refinement")
 """Kinds of plug-ins that a scheme is made of."""
@@ -21,9 +22,11 @@ def plugins_of(case: Case) -> list[tuple[str, Plugin]]:
         used.append(("law", law))
         if law.uses_equation_of_state:
             used.append(("equation_of_state", material.equation_of_state))
+    used += [("body_shape", body.shape) for body in case.bodies]
     used += [("initial_field", field) for body in case.bodies for field in body.initial.values()]
     for wall in case.walls.values():
         used += [("surface", wall.surface), ("contact", wall.contact)]
+        used += [("body_shape", shape) for shape in shapes_in(wall.surface).values()]
     used += [("source", one.source) for one in case.sources.values()]
     used += [("body_force", force) for force in case.forces.values()]
     used += [("sink", sink) for sink in case.sinks.values()]

@@ -37,6 +37,8 @@ def shipped_case(name: str) -> Path:
     found = shipped()
     if name not in found:
         near = nearest(name, list(found))
-        meant = "" if near is None else f"; did you mean '{near}'?"
-        raise CaseError(f"there is no shipped case {shown(name)}{meant} mpmkit cases lists them")
+        likely = [near] if near is not None else [one for one in found if name and name.lower() in one]
+        names = " or ".join(f"'{one}'" for one in likely)
+        meant = f" did you mean {names}?" if likely else ""
+        raise CaseError(f"there is no shipped case {shown(name)};{meant} mpmkit cases lists them")
     return found[name]

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..contracts import Mouth
 from ..geometry.section import Section, section
 from ..output.variables import Variable
 from ..registry import audit
@@ -151,12 +152,31 @@ def _check_path(where: str, name: str, case: Case) -> None:
             continue
         low, high = centre + moved - half, centre + moved + half
         for a, axis in enumerate(case.space_.axes):
+            if plane := _cut_by(mouth, a, case):
+                if abs(moved[a]) > tolerance:
+                    raise ValueError(
+                        f"{where}: the plane of symmetry {plane} cuts its mouth, which moves along {axis} at "
+                        f"t = {time:.4g} s; it must stay on the plane"
+                    )
+                continue
             if low[a] < lower[a] - tolerance or high[a] > upper[a] + tolerance:
                 out = low[a] if low[a] < lower[a] - tolerance else high[a]
                 raise ValueError(
                     f"{where}: at t = {time:.4g} s its mouth reaches {axis} = {out:.6g} m, outside the grid, "
                     f"whose domain along {axis} is [{lower[a]:.9g}, {upper[a]:.9g}] m"
                 )
+
+
+def _cut_by(mouth: Mouth, a: int, case: Case) -> str | None:
+    """The plane of symmetry across an axis that cuts a mouth at the start, if any."""
+    axis, tolerance = case.space_.axes[a], WHOLE * case.grid.cell_size
+    for side, beyond in (
+        ("min", case.domain_bounds[0][a] - mouth.centre[a] + mouth.half_width[a]),
+        ("max", mouth.centre[a] + mouth.half_width[a] - case.domain_bounds[1][a]),
+    ):
+        if beyond > tolerance and case.grid.faces.get(f"{axis}_{side}") == "symmetry":
+            return f"{axis}_{side}"
+    return None
 
 
 def _check_overlaps(where: str, name: str, case: Case) -> None:

@@ -11,6 +11,7 @@ from ..registry import audit
 from ..registry.blame import blaming_plugins
 from .allowed import shown
 from .model import Case, Wall
+from .shapes import check_shape, shapes_in
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")
 TIMES = 64
@@ -35,6 +36,8 @@ def check_walls(case: Case) -> None:
     """
     for name, wall in case.walls.items():
         _check_name(name, case)
+        for field, shape in shapes_in(wall.surface).items():
+            check_shape(f"walls.{name}.surface.{field}", shape, case.space_)
         with blaming_plugins([("surface", wall.surface), ("contact", wall.contact)]):
             problem = audit.problem(wall.surface, case.space_)
             if problem is not None:

@@ -1,4 +1,4 @@
-"""The command line. Each command is one small file; ``main`` gives errors their sentence and exit status."""
+"""The command line. Each command is one small file; ``main`` sets the exit status."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         arguments: default: those of the process.
     """
     try:
-        from .commands import execute  # in here: Ctrl-C may come while this is loaded
+        from .commands import execute  # inside try: Ctrl-C may come while these are loaded
         from .printing import replace_unknown_characters
 
         replace_unknown_characters()

@@ -24,7 +24,7 @@ SECONDS = 5.0
 )
 @options.as_json
 def command(scenes: tuple[str, ...], threads: int | None, seconds: float, as_json: bool) -> None:
-    """Time full steps of the standard scenes in mid-flow, kernel by kernel; default: all of them."""
+    """Measure the time of full steps in the standard scenes, kernel by kernel; default: all scenes."""
     from ..bench import SCENES, time_scene
     from ..errors import CaseError
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import sys
 import textwrap
 
 from . import options
@@ -12,14 +14,14 @@ from .printing import echo, echo_json
 
 DAY = 86400.0
 """s"""
-LONGEST = 100
-"""Most characters of the description of a case."""
+NO_WRAPPING = 10_000
+"""Width of an output that is not a terminal: one line for each case, for other programs."""
 
 
 @with_examples("cases", "mpmkit cases", "mpmkit cases --json > cases.json")
 @options.as_json
 def command(as_json: bool) -> None:
-    """List the shipped cases, and how long each takes on this machine, to within a factor of two."""
+    """List the shipped cases, with the time that each takes on this machine, within a factor of two."""
     from ..case.load import read_json
     from ..case.shipped import LABORATORY, shipped
     from ..plan.shipped_times import shipped_seconds
@@ -40,21 +42,25 @@ def command(as_json: bool) -> None:
         echo_json(rows)
         return
     width = max(len(row["name"]) for row in rows)
+    wide = shutil.get_terminal_size().columns if _is_terminal() else NO_WRAPPING
     for laboratory, title in ((True, "tests of the laboratory"), (False, "other cases")):
         echo(f"{title:<{width}}  {'time':>8}  {'fine':>8}")
         for row in rows:
             if row["laboratory"] == laboratory:
                 times = (row["expected_seconds"], row["expected_seconds_fine"])
                 columns = "  ".join(f"{_time(time):>8}" for time in times)
-                echo(f"{row['name']:<{width}}  {columns}  {_first_sentence(row['description'])}")
+                before = f"{row['name']:<{width}}  {columns}  "
+                echo(_beside(before, _first_sentence(row["description"]), wide))
         echo("")
     echo(
-        "time and fine are the expected minutes:seconds on this machine, of the case and of its fine variant"
-    )
-    echo(
-        "mpmkit init NAME writes one to a file of your own, with --fine its fine variant; "
+        "time: expected time on this machine, in minutes:seconds; fine: that of the fine variant\n"
+        "mpmkit init NAME writes a case to a file of your own, with --fine its fine variant\n"
         "mpmkit run FILE runs it"
     )
+
+
+def _is_terminal() -> bool:
+    return sys.stdout.isatty()
 
 
 def _time(seconds: float | None) -> str:
@@ -64,5 +70,9 @@ def _time(seconds: float | None) -> str:
 
 
 def _first_sentence(text: str) -> str:
-    first = re.split(r"(?<!\bal)\. ", text, maxsplit=1)[0]  # "et al. " does not end a sentence
-    return textwrap.shorten(first.rstrip("."), LONGEST, placeholder=" …")
+    return re.split(r"(?<!\bal)\. ", text, maxsplit=1)[0].rstrip(".")  # "et al. " does not end a sentence
+
+
+def _beside(before: str, text: str, wide: int) -> str:
+    """A text to the right of ``before``, in as many lines of ``wide`` characters as it needs."""
+    return textwrap.fill(text, wide, initial_indent=before, subsequent_indent=" " * len(before))

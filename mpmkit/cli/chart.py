@@ -34,13 +34,13 @@ from .printing import echo
 @click.option("--out", type=PATH, metavar="FILE", help="The picture; default: chart.png of the study.")
 @click.option("--overwrite", is_flag=True, help="Replace a file that --out names.")
 def command(study: str, variable: str, reference: str, cost: str, out: str | None, overwrite: bool) -> None:
-    """Chart error against cost over the members of STUDY, a study's directory, and name Pareto's front."""
+    """Draw error against cost for the members of the study in the directory STUDY, with the Pareto front."""
     from ..errors import CaseError
     from ..output.netcdf import read_dataset
     from ..study.chart import chart
     from ..study.chart_figure import draw
 
-    if out is not None:  # the chart.png of a study is drawn anew by every chart
+    if out is not None:  # chart.png of the study is always replaced
         refuse_existing(Path(out), overwrite)
     results = Path(study) / "results.nc"
     try:
@@ -49,7 +49,7 @@ def command(study: str, variable: str, reference: str, cost: str, out: str | Non
             raise ValueError
     except (OSError, RuntimeError, ValueError):
         raise CaseError(
-            f"'{study}' must be the directory of a study that was run; there is no {results} of one"
+            f"'{study}' must be the directory of a study that was run; it has no valid {results.name}"
         ) from None
     found = chart(dataset, variable, reference, cost)
     path = Path(out) if out is not None else Path(study) / "chart.png"

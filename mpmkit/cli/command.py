@@ -1,4 +1,4 @@
-"""A command whose help ends with examples that run as they stand."""
+"""A command whose help ends with examples that can be copied and run."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ class Command(click.Command):
         self.examples = tuple(examples)
 
     def get_short_help_str(self, limit: int = 0) -> str:
-        """The whole first sentence: one that is cut off says nothing."""
+        """The whole first sentence; click would cut it off."""
         return " ".join((self.help or "").split("\n\n")[0].split()).rstrip(".")
 
     def format_epilog(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         super().format_epilog(context, formatter)
         with formatter.section("Examples"):
             for example in self.examples:
-                formatter.write(f"{'':{formatter.current_indent}}{example}\n")  # never wrapped: it is copied
+                formatter.write(f"{'':{formatter.current_indent}}{example}\n")  # not wrapped: it is copied
 
 
 def with_examples(name: str, *examples: str) -> Callable[[Callable], Command]:
-    """Make a function the command ``mpmkit NAME`` with the examples of its help."""
+    """Decorator that makes a function the command ``mpmkit NAME``, with examples in its help."""
     return click.command(name, cls=Command, examples=examples)

@@ -1,4 +1,4 @@
-"""All commands, and what becomes of their errors."""
+"""All commands, and the treatment of their errors."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ from . import (
 from .printing import results_alone
 
 PIPE_CLOSED = 141
-"""What a shell says of a command that SIGPIPE ended."""
+"""Exit status that a shell gives to a command ended by SIGPIPE."""
 
 
 class PipeClosed(Exception):
-    """Nobody reads any more what is printed, as after ``| head``."""
+    """The reader of the output has closed it, as ``| head`` does."""
 
 
 class _Commands(click.Group):
-    """A group that leaves a closed pipe to ``execute``; click itself would end with status 1."""
+    """A group that lets ``execute`` handle a closed pipe; click itself would end with status 1."""
 
-    def make_context(self, *arguments: Any, **options: Any) -> click.Context:  # here a help is printed
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:  # this prints the help
         with _closed_pipe():
             return super().make_context(*arguments, **options)
 
@@ -67,7 +67,7 @@ def _closed_pipe() -> Iterator[None]:
 
 def _tell_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked:
-        # To read the metadata of the package takes a third of the start.
+        # Imported here, because reading the metadata of the package takes a third of the start-up time.
         from ..version import __version__
 
         click.echo(f"mpmkit, version {__version__}")
@@ -121,7 +121,7 @@ for command in (commands, *commands.commands.values()):
 
 
 def execute(arguments: Sequence[str] | None) -> int:
-    """Run a command line and return its exit status; an error is told in one sentence.
+    """Run a command line and return its exit status; an error is printed as one sentence.
 
     Raises:
         KeyboardInterrupt: on Ctrl-C.
@@ -138,7 +138,7 @@ def execute(arguments: Sequence[str] | None) -> int:
     except PipeClosed:
         _let_go_of_output()
         return PIPE_CLOSED
-    except click.Abort as abort:  # click's word for it
+    except click.Abort as abort:  # the class that click raises for Ctrl-C
         raise KeyboardInterrupt(str(abort.__cause__ or "")) from None
     except OSError as error:  # such as a full disk
         if not _of_printing(error):
@@ -154,7 +154,7 @@ def _of_printing(error: OSError) -> bool:
 
 
 def _let_go_of_output() -> None:
-    """Send what is still to be printed nowhere, or Python would fail of it once more when it ends."""
+    """Discard what is not printed yet; otherwise Python fails again when it ends."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):
             stream.flush()
@@ -164,5 +164,5 @@ def _let_go_of_output() -> None:
 
 
 def _tell(sentence: str) -> None:
-    with suppress(OSError):  # nobody may read it any more
+    with suppress(OSError):  # its reader may be gone too
         click.echo(f"mpmkit: {' '.join(sentence.split())}", err=True)

@@ -6,6 +6,7 @@ import click
 
 from . import options
 from .command import with_examples
+from .many_runs import ManyRuns, study_runs
 from .study import run_study
 
 
@@ -20,25 +21,11 @@ from .study import run_study
 )
 @options.set_values
 @options.until
-@options.study_out
-@options.study_overwrite
-@options.workers
-@options.member_threads
-@options.scheduler
-@options.quiet
+@study_runs("runs/compare-<case name>")
 def command(
-    case: str,
-    vary: tuple[str, ...],
-    overrides: tuple[str, ...],
-    until: float | None,
-    out: str | None,
-    overwrite: bool,
-    workers: int | None,
-    threads: int | None,
-    scheduler: str | None,
-    quiet: bool,
+    case: str, vary: tuple[str, ...], overrides: tuple[str, ...], until: float | None, how: ManyRuns
 ) -> None:
-    """Run CASE with every combination of the values given, and gather them as a study does."""
+    """Run CASE with every combination of the given values, and collect the results as a study does."""
     from ..case.load import name_from, read_case
     from ..case.overrides import apply_overrides
     from ..errors import CaseError
@@ -62,4 +49,4 @@ def command(
         },
         source="--vary",
     )
-    run_study(study, out, overwrite, workers, threads, scheduler, quiet)
+    run_study(study, how)

@@ -9,7 +9,7 @@ from .printing import echo
 
 SHELLS = ("bash", "zsh", "fish")
 VARIABLE = "_MPMKIT_COMPLETE"
-"""By which a shell asks click for completions; click forms the name from that of the program."""
+"""Environment variable with which a shell asks click for completions; its name follows from the program's."""
 
 
 @with_examples("completion", "mpmkit completion bash > mpmkit.bash")

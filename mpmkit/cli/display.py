@@ -1,4 +1,4 @@
-"""What a person sees of a run: a progress bar on a terminal, a line now and then elsewhere, and a summary."""
+"""Display of a run: a progress bar on a terminal, otherwise a line at intervals; at the end a summary."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 LOGGER = logging.getLogger("mpmkit")
 LINE_INTERVAL = 30.0
-"""Seconds between lines where the output is not a terminal."""
+"""Seconds between two lines if the output is not a terminal."""
 LONGEST_NAME = 24
-"""Letters of a case's name beside the bar."""
+"""Largest number of letters of a case's name beside the bar."""
 NARROWEST_BAR, WIDEST_BAR = 10, 40
 PERCENTAGE = len("100% ")
 FIGURES = (
@@ -41,13 +41,14 @@ FIGURES = (
     ("particles", "particles", 1, "", 0),
     ("steps", "steps", 1, "", 0),
     ("wall_time", "wall time", 1, " s", 1),
-    ("particle_steps_per_second", "particle-steps a second", 1e-6, " million", 2),
 )
-"""What the summary shows: key, label, scale, unit and digits."""
+"""Entries of the summary: key, label, scale, unit and digits."""
+PARTICLE_STEPS = "particle-steps per second"
+MILLION = 1e6
 
 
 class _Screen(Console):
-    """Falls silent where nobody reads any more; rich itself would end the process, and the run with it."""
+    """Stops printing if its reader is gone; rich itself would end the process, and the run with it."""
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
@@ -57,9 +58,9 @@ console = _Screen(stderr=True)
 
 
 def say(line: str, style: str | None = None) -> None:
-    """A line beside the progress bar, never wrapped or coloured by its content.
+    """Print a line beside the progress bar; it is not wrapped, and its content sets no colours.
 
-    What nobody can read any more, on a full disk or a closed pipe, is not worth a run.
+    An error of the output, such as a full disk or a closed pipe, must not stop the run. It is ignored.
     """
     with suppress(OSError):
         console.print(line, style=style, soft_wrap=True, highlight=False, markup=False)
@@ -68,8 +69,8 @@ def say(line: str, style: str | None = None) -> None:
 class Display(logging.Handler):
     """Shows the log and the progress of a run; a context manager, called with every ``runner.Progress``.
 
-    Errors of the log are left to the last sentence of ``main``, and nothing is shown before the run has
-    something to say: a case that is refused is reported in one sentence and no more.
+    Errors of the log are not shown here, because ``main`` prints them at the end. Nothing is shown before the
+    first message of the run, so that a case that is refused is reported in one sentence only.
 
     Args:
         name: of the run.
@@ -98,7 +99,7 @@ class Display(logging.Handler):
         self._task = self._bar.add_task(name, total=1.0, line="")
         self._started = False
         self._waiting: list[Callable[[], None]] = []
-        """what is to be called once the run has something to say"""
+        """functions to call after the first message of the run"""
         self._compiling = _Compiling(self._say_compiling)
         self._said = clock.monotonic()
         self._level_before = LOGGER.level
@@ -121,7 +122,7 @@ class Display(logging.Handler):
         LOGGER.setLevel(self._level_before)
 
     def once_started(self, call: Callable[[], None]) -> None:
-        """Call a function once the run has something to say; from any thread."""
+        """Call a function after the first message of the run; can be called from any thread."""
         with self.lock or nullcontext():  # in which ``emit`` is called as well
             if not self._started:
                 self._waiting.append(call)
@@ -142,7 +143,7 @@ class Display(logging.Handler):
             self._bar.start()
 
     def _say_compiling(self) -> bool:
-        """Say that kernels are compiled, once the run has begun to speak; whether it was said."""
+        """Say that kernels are compiled, after the first message of the run; return whether it was said."""
         if self._started:
             say("compiling kernels for the first run of this kind, which takes about 20 seconds")
         return self._started
@@ -185,7 +186,7 @@ class _BarAndPlot(Progress):
 
 
 class _Compiling(event.Listener):
-    """Calls ``say`` at the first kernel that is compiled and not loaded, until it returns True."""
+    """Calls ``say`` at each kernel that is compiled instead of loaded, until ``say`` returns True."""
 
     def __init__(self, say: Callable[[], bool]) -> None:
         self._say = say
@@ -201,17 +202,22 @@ class _Compiling(event.Listener):
 def _lines(
     time: float, until: float, speed: float, seconds_left: float, ends_earlier: bool = False
 ) -> tuple[str, ...]:
-    """What stands beside the bar, the longest first: a narrow terminal has room for the last alone."""
+    """Texts beside the bar, from the longest to the shortest: a narrow terminal shows only the last."""
     at_most = "at most " if ends_earlier else ""
     left = f"{at_most}{duration(seconds_left)} left"
     now = f"t = {time:.4g} of {at_most}{until:g} s"
-    return f"{now} · {speed / 1e6:.2f} M particle-steps/s · {left}", f"{now} · {left}", left
+    return f"{now} · {_speed(speed, 'M')} particle-steps/s · {left}", f"{now} · {left}", left
+
+
+def _speed(speed: float, million: str) -> str:
+    """A number of particle-steps per second, in millions if it is not small."""
+    return f"{speed / MILLION:.2f} {million}" if speed >= MILLION / 10 else f"{speed:,.0f}"
 
 
 def show_summary(directory: Path) -> None:
-    """The figures of ``summary.json``, and where everything lies, on standard output."""
+    """Print the numbers of ``summary.json`` and the run directory on standard output."""
     summary = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
-    width = max(len(label) for _, label, *_ in FIGURES)
+    width = max(len(PARTICLE_STEPS), *(len(label) for _, label, *_ in FIGURES))
     shown = [figure for figure in FIGURES if figure[0] != "t500_from_lift" or lifted_later(summary)]
     for key, label, scale, unit, digits in shown:
         value = summary[key]
@@ -219,6 +225,8 @@ def show_summary(directory: Path) -> None:
         if key == "final_spread" and (state := state_at_end(summary)) is not None:
             figure += f", {state}"
         echo(f"{label:<{width}}  {figure}")
+    speed = summary["particle_steps_per_second"]
+    echo(f"{PARTICLE_STEPS:<{width}}  {'–' if speed is None else _speed(speed, 'million')}")
     for name in [name for name in summary["units"] if name not in UNITS]:
         unit = summary["units"][name].removeprefix("1")
         value = summary[name]

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 @with_examples("doctor", "mpmkit doctor", "mpmkit doctor --json")
 @options.as_json
 def command(as_json: bool) -> None:
-    """Describe this installation and its machine, to be pasted into a bug report.
+    """Describe this installation and this machine, for a bug report.
 
-    It names versions, processor, threads, compile caches, memory, disk and plug-ins, and says in a sentence
-    what is wrong with any of them. The exit status is 0 also where problems are found.
+    The output has versions, processor, threads, caches of compiled code, memory, disk and plug-ins, and a
+    sentence for each problem. The exit status is 0 also if there are problems.
     """
     from ..doctor import examine
 

@@ -1,4 +1,4 @@
-"""Lengths of time, as a person says and types them."""
+"""Lengths of time as people write them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ YEAR = 365.25 * 86400
 
 
 def duration(seconds: float) -> str:
-    """Minutes and seconds, 1:05, hours, 2:01:05, or days before them; from a year on, years."""
+    """Minutes and seconds, 1:05; with hours, 2:01:05; with days before them; or years, if longer than one."""
     if not seconds < YEAR:
         return f"{seconds / YEAR:.3g} years" if math.isfinite(seconds) else "for ever"
     minutes, rest = divmod(round(seconds), 60)
@@ -28,7 +28,7 @@ UNITS = {"": 1.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 
 
 class Seconds(click.ParamType):
-    """A length of time as it is typed: 60s, 10min, 1.5h, or a number of seconds."""
+    """A length of time as an option: 60s, 10min, 1.5h, or a number of seconds."""
 
     name = "time"
 
@@ -37,7 +37,7 @@ class Seconds(click.ParamType):
             return value
         found = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)\s*(s|min|h)?", str(value).strip())
         if found is None or float(found[1]) <= 0:
-            self.fail(f"{value} is no time above zero, such as 60s, 10min or 1h", parameter, context)
+            self.fail(f"{value} must be a time above zero, such as 60s, 10min or 1h", parameter, context)
         return float(found[1]) * UNITS[found[2] or ""]
 
 

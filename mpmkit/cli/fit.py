@@ -2,46 +2,29 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
 
-from . import options
 from .command import with_examples
+from .many_runs import ManyRuns, many_runs
 from .paths import PATH
 from .printing import echo
 
 
 @with_examples("fit", "mpmkit fit cases/fits/final_spread.json")
 @click.argument("fit", type=PATH)
-@click.option("--out", type=PATH, metavar="DIR", help="The fit's directory; default: runs/<fit name>.")
-@click.option(
-    "--overwrite", is_flag=True, help="Replace the result of another fit in the directory; its runs are kept."
+@many_runs(
+    "fit",
+    "run",
+    "runs/<fit name>",
+    "Replace the result of another fit in the directory; its runs are kept.",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(min=1),
-    help="Runs at once; default: as many as this machine's cores hold.",
-)
-@click.option("--threads", type=click.IntRange(min=1), help="Threads of each run; default: as the fit says.")
-@options.scheduler
-@options.quiet
-def command(
-    fit: str,
-    out: str | None,
-    overwrite: bool,
-    workers: int | None,
-    threads: int | None,
-    scheduler: str | None,
-    quiet: bool,
-) -> None:
+def command(fit: str, how: ManyRuns) -> None:
     """Find the parameters of cases from the measurements that FIT describes.
 
     Runs that are kept in the directory, of the same case and with the same versions, are not run again.
     """
-    from contextlib import nullcontext
-
     from ..errors import Interrupted
     from ..fitting import fit as find
     from ..fitting import load_fit
@@ -49,39 +32,33 @@ def command(
     from ..running.interrupts import take_signals_as_interrupts
 
     wanted = load_fit(fit)
-    directory = Path(out) if out is not None else Path("runs") / wanted.name
+    directory = how.directory(wanted.name)
     take_signals_as_interrupts()
-    if scheduler is None:
-        cluster: Any = nullcontext()
-    else:
-        from ..study.cluster import cluster as on_cluster
-
-        cluster = on_cluster(scheduler)
-    with cluster as executor:
+    with how.cluster() as executor:
         try:
             result = find(
                 wanted,
                 directory,
-                overwrite=overwrite,
-                threads=threads,
-                workers=workers,
+                overwrite=how.overwrite,
+                threads=how.threads,
+                workers=how.workers,
                 executor=executor,
-                listen=None if quiet else _Counter(),
+                listen=None if how.quiet else _Counter(),
             )
         except KeyboardInterrupt:
             raise Interrupted(
                 f"interrupted; the runs that had finished are in '{directory}', and the same command "
                 "continues from there"
             ) from None
-    if quiet:
+    if how.quiet:
         return
     for found in result.parameters.values():
-        known = "" if found.identifiable else ", not known from these measurements"
         unit = f" {found.unit}" if found.unit else ""
-        echo(
-            f"{found.path} = {found.value:.4g}{unit}, from {found.low:.4g} to {found.high:.4g} "
-            f"at {100 * found.level:g} %{known}"
-        )
+        interval = f"from {found.low:.4g} to {found.high:.4g}{unit} at {100 * found.level:g} %"
+        if found.identifiable:
+            echo(f"{found.path} = {found.value:.4g}{unit}, {interval}")
+        else:
+            echo(f"{found.path} is not known from these measurements: {interval}")
     for sentence in result.sentences:
         echo(sentence)
     echo(f"{result.runs} runs; results in {directory}; open {directory / PAGE} in a browser")

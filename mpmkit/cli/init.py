@@ -24,13 +24,13 @@ from .printing import echo
     "overrides",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Another value of a parameter, such as yield_stress=50, or of any place of the case.",
+    help="New value of a parameter, such as yield_stress=50, or of any key of the case.",
 )
 @click.option("--fine", is_flag=True, help="Write the fine variant, which takes longer.")
 @click.option("--out", type=PATH, metavar="FILE", help="The file to write; default: NAME.json.")
 @options.overwrite_file
 def command(name: str, overrides: tuple[str, ...], fine: bool, out: str | None, overwrite: bool) -> None:
-    """Write the shipped case NAME, with its parameters at the top, to a file of your own."""
+    """Write the shipped case NAME, with its parameters at the top, to your own file."""
     from ..case import parse_case
     from ..case.load import name_from, read_json
     from ..case.overrides import apply_overrides
@@ -50,18 +50,18 @@ def command(name: str, overrides: tuple[str, ...], fine: bool, out: str | None, 
     path = Path(out) if out is not None else Path(f"{name}.json")
     parse_case({"name": name_from(path)} | data, source=f"init {name}")
     if path.exists() and not overwrite:
-        raise OutputError(f"{path} exists; give another file by --out, or --overwrite")
+        raise OutputError(f"{path} exists; give another file with --out, or --overwrite")
     with replacing(path) as partial:
         partial.write_text(case_text(data), encoding="utf-8")
     for parameter, entry in parameters(data).items():
         if entry.given:
             unit = "" if entry.unit == "1" else f" {entry.unit}"
             echo(f"{parameter:<22} {f'{entry.value:g}{unit}':<14} {entry.description}")
-    echo(f"written to {path}; run it by: mpmkit run {path}")
+    echo(f"written to {path}; to run it: mpmkit run {path}")
 
 
 def _of_parameter(override: str, block: dict) -> str:
-    """``yield_stress=50`` as ``parameters.yield_stress=50``, where there is such a parameter.
+    """``yield_stress=50`` as ``parameters.yield_stress=50``, if there is such a parameter.
 
     Raises:
         CaseError: it is neither a parameter nor a place of a case.

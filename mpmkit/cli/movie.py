@@ -25,7 +25,7 @@ CHOICES = ("speed", "shear-rate", "yielded", "pressure")
     type=click.FloatRange(min=0.1, max=50),
     default=10.0,
     show_default=True,
-    help="Pictures a second; each frame of the run is one picture.",
+    help="Pictures per second; each frame of the run is one picture.",
 )
 @click.option(
     "--colour-by",
@@ -53,7 +53,7 @@ def command(directory: str, fps: float, colour_by: str, out: str | None, overwri
     from ..report.movie import make_movie
 
     run = Path(directory)
-    if out is None:  # like the pictures of the report, it is drawn anew each time
+    if out is None:  # like the pictures of the report, report/movie.gif is always replaced
         path = RunDirectory(run).movie
         if run.is_dir():
             path.parent.mkdir(exist_ok=True)
@@ -64,5 +64,5 @@ def command(directory: str, fps: float, colour_by: str, out: str | None, overwri
         echo(str(make_movie(run, path, fps, colour_by)))
     except MpmkitError:
         raise
-    except Exception as error:  # a frame that someone has changed or cut off
+    except Exception as error:  # a frame is damaged
         raise CaseError(f"the movie of '{directory}' cannot be drawn: {reason(error)}") from None

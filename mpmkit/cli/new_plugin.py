@@ -19,6 +19,7 @@ KINDS = [
     "redistribution",
     "refinement",
     "equation_of_state",
+    "body_shape",
     "surface",
     "contact",
     "body_force",
@@ -36,11 +37,11 @@ KINDS = [
     "--kind",
     type=click.Choice(KINDS),
     required=True,
-    help="What the plug-in is.",
+    help="Kind of the plug-in.",
 )
-@click.option("--out", type=PATH, metavar="DIR", help="Directory to make; default: mpmkit-NAME.")
+@click.option("--out", type=PATH, metavar="DIR", help="The new directory; default: mpmkit-NAME.")
 def command(name: str, kind: str, out: str | None) -> None:
-    """Write a distribution for a new plug-in NAME, with tests that pass; replace its equations by yours."""
+    """Write a package for a new plug-in NAME, with an example and tests that pass; replace its equations."""
     from ..registry.scaffold import new_plugin
 
     directory = new_plugin(name, kind, None if out is None else Path(out))

@@ -1,4 +1,4 @@
-"""Options that mean the same on every command that runs something."""
+"""Options with the same meaning in all commands that run something."""
 
 from __future__ import annotations
 
@@ -16,33 +16,17 @@ set_values = click.option(
     metavar="PATH=VALUE",
     help="Change one value of the case, such as scheme.order=usf or bodies.0.material.yield_stress=50.",
 )
-until = click.option("--until", type=float, metavar="T", help="Simulated time, s, instead of the case's.")
+until = click.option("--until", type=float, metavar="T", help="Simulated time, s; default: that of the case.")
 threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads to use; default: as many as make the run faster."
+    "--threads",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Threads to use; default: as many as make the run faster.",
 )
 quiet = click.option("--quiet", is_flag=True, help="Print only errors.")
 overwrite = click.option("--overwrite", is_flag=True, help="Replace an earlier run in the run directory.")
 overwrite_file = click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 out = click.option("--out", type=PATH, metavar="DIR", help="Run directory; default: runs/<case name>.")
-study_out = click.option(
-    "--out", type=PATH, metavar="DIR", help="The study's directory; default: runs/<study name>."
-)
-study_overwrite = click.option(
-    "--overwrite",
-    is_flag=True,
-    help="Replace results in the study's directory that do not belong to this study.",
-)
-member_threads = click.option(
-    "--threads", type=click.IntRange(min=1), help="Threads of each member; default: as the study says."
-)
-workers = click.option(
-    "--workers",
-    type=click.IntRange(min=1),
-    help="Members to run at the same time; default: as many as fit on the cores.",
-)
-scheduler = click.option(
-    "--scheduler", metavar="ADDRESS", help="Run on the cluster of this dask.distributed scheduler."
-)
 no_plugins = click.Option(
     ["--no-plugins"],
     is_flag=True,
@@ -54,10 +38,10 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 def _leave_out_plugins() -> None:
-    """In this process and in those that it starts: by the environment, since nothing is loaded yet."""
+    """Leave out plug-ins in this process and its child processes, by an environment variable."""
     os.environ["MPMKIT_PLUGINS"] = ""
 
 
 def with_until(overrides: tuple[str, ...], until: float | None) -> tuple[str, ...]:
-    """The overrides, and after them that of the option ``--until``."""
+    """The overrides, followed by that of the option ``--until``."""
     return overrides if until is None else (*overrides, f"until={until!r}")

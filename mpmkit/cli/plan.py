@@ -10,7 +10,7 @@ from .duration import duration
 from .printing import echo, echo_json
 
 MOST_COUNTED = 10**15
-"""From here on nobody reads the digits."""
+"""Larger numbers are shown with an exponent."""
 
 
 @with_examples(
@@ -26,7 +26,7 @@ MOST_COUNTED = 10**15
 def command(
     case: str, overrides: tuple[str, ...], until: float | None, threads: int | None, as_json: bool
 ) -> None:
-    """Say what a run of CASE will cost: particles, nodes, steps, memory and time."""
+    """Compute what a run of CASE will cost: particles, nodes, steps, memory and time."""
     from ..case import load_case
 
     loaded = load_case(case, options.with_until(overrides, until))
@@ -57,13 +57,13 @@ def command(
 
 
 def _advice(asked: str, cost: dict) -> list[str]:
-    """A table of the scene as it stands and of cheaper models, and how to run them.
+    """A table of the case and of cheaper models, and the commands that run them.
 
-    ``asked`` is the case with the options that it was given: a model's own come after them, and so over them.
+    ``asked`` is the case with its options; the options of a model follow them, so that they take precedence.
     """
     if not cost["cheaper"]:
         return []
-    models = [{"name": "as it stands"} | cost, *cost["cheaper"]]
+    models = [{"name": "this case"} | cost, *cost["cheaper"]]
     width = max(len(model["name"]) for model in models)
     lines = ["", f"{'model':{width}}  {'particles':>10}  {'steps':>10}  {'time':>8}  error of the spread*"]
     for model in models:
@@ -74,7 +74,7 @@ def _advice(asked: str, cost: dict) -> list[str]:
             f"{'not known' if error is None else f'{100 * error:.2g} %'}"
         )
     lines += [
-        "* in the first 1.5 s; known only if all else is as in the shipped study of a slump",
+        "* in the first 1.5 s; known only for cases like the slump test of the shipped study",
         "",
     ]
     for model in cost["cheaper"]:

@@ -1,4 +1,4 @@
-"""What commands print: results, and nothing else, on the standard output."""
+"""Output of commands: only results go to the standard output."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from typing import Any, TextIO
 import click
 
 STDOUT, STDERR = 1, 2
-"""Numbers of the files that the system gives a process."""
+"""File descriptors of the standard output and the standard error."""
 _results: TextIO | None = None
-"""The standard output, while a command runs; None for that of Python."""
+"""The stream for results while a command runs; None for Python's standard output."""
 
 
 def replace_unknown_characters() -> None:
-    """Print a question mark for what the encoding of an output lacks: no result is lost for a dash."""
+    """Print a question mark for each character that the encoding of an output lacks, instead of an error."""
     for stream in (sys.stdout, sys.stderr):
-        reconfigure = getattr(stream, "reconfigure", None)  # a stream put in their place may lack it
+        reconfigure = getattr(stream, "reconfigure", None)  # a stream in their place may lack it
         if reconfigure is not None:
             reconfigure(errors="replace")
 
 
 @contextmanager
 def results_alone() -> Iterator[None]:
-    """Keep the standard output for ``echo``: what plug-ins print inside the block goes to standard error.
+    """Keep the standard output for ``echo``: other output inside the block goes to standard error.
 
-    That holds for ``print``, for libraries in other languages, and for processes that are started.
+    This holds for ``print``, for libraries in other languages, and for processes that are started.
     """
     global _results
     before = sys.stdout
     if before is not None:
         before.flush()
     saved = None
-    with suppress(OSError):  # one of them is closed, or a test has put something else in its place
+    with suppress(OSError):  # one of them is closed, or a test has replaced it
         saved = os.dup(STDOUT)
         os.dup2(STDERR, STDOUT)
     _results, sys.stdout = _opened(before, saved), sys.stderr
@@ -46,20 +46,20 @@ def results_alone() -> Iterator[None]:
     finally:
         sys.stdout = before
         with suppress(OSError, ValueError):
-            before.flush()  # what was written to it in another way, while it still leads to standard error
+            before.flush()  # other output, while the descriptor still leads to standard error
         if _results is not before and _results is not None:
-            with suppress(OSError):  # what ``echo`` could not write it has said
+            with suppress(OSError):  # ``echo`` has reported it
                 _results.close()
         _results = None
         if saved is not None:
-            with suppress(OSError, AttributeError, TypeError):  # a system whose library is found otherwise
+            with suppress(OSError, AttributeError, TypeError):  # other systems find the C library otherwise
                 ctypes.CDLL(None).fflush(None)
             os.dup2(saved, STDOUT)
             os.close(saved)
 
 
 def _opened(stream: TextIO, saved: int | None) -> TextIO:
-    """A stream to where this one leads before its file is another; itself if it leads elsewhere."""
+    """A copy of a stream that keeps its present target; the stream itself if it is not this descriptor."""
     try:
         if saved is None or stream.fileno() != STDOUT:
             return stream
@@ -74,7 +74,7 @@ def echo(text: str, nl: bool = True) -> None:
 
 
 def echo_json(data: Any) -> None:
-    """Print JSON: its characters as they are in UTF-8, and escaped in every other encoding."""
+    """Print JSON; characters beyond ASCII are escaped, except if the encoding is UTF-8."""
     encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
     readable = encoding.lower().replace("-", "").replace("_", "") == "utf8"
     echo(json.dumps(data, indent=2, ensure_ascii=not readable))

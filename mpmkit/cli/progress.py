@@ -1,4 +1,4 @@
-"""What a person sees of a study: how long it takes, a bar over its members, and a line for each that ends."""
+"""Display of a study: expected time, a bar over its members, and a line for each finished member."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .display import console, say
 from .duration import duration
 
 WORTH_SAYING = 10.0
-"""Seconds that a study takes at the least, for its time to be said."""
+"""The expected time of a study is printed if it is at least this, s."""
 
 
 class StudyProgress:
@@ -80,9 +80,9 @@ class StudyProgress:
         say(f"{member.title}: {outcome.fate}{took}{': ' if outcome.sentence else ''}{outcome.sentence}")
 
     def _left(self) -> float:
-        """Seconds, from the rough times of those that wait, corrected by what others have really taken.
+        """Remaining time, s: the rough times of the waiting members, corrected by the real times of others.
 
-        Between two members that end, the time that passes is taken off.
+        Between the ends of two members, the elapsed time is subtracted.
         """
         correction = self._taken / self._of_those if self._of_those > 0 else 1.0
         each = [correction * seconds for seconds in self._expected.values()]
@@ -97,7 +97,7 @@ class StudyProgress:
 
 
 class _TimeLeft(ProgressColumn):
-    """The time left, as it is whenever the bar is drawn."""
+    """The remaining time, computed whenever the bar is drawn."""
 
     def __init__(self, words: Callable[[], str]) -> None:
         super().__init__()
@@ -108,7 +108,7 @@ class _TimeLeft(ProgressColumn):
 
 
 def _expected(member: Member, threads: int) -> float:
-    """Rough time of a member, s; of a faulty plug-in none is known, and it is told when the member is run."""
+    """Rough time of a member, s; 0 if a plug-in is faulty, which is reported when the member is run."""
     try:
         return rough_seconds(member.case, threads)
     except Exception:

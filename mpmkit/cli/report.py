@@ -16,7 +16,7 @@ from .printing import echo
 )
 @click.argument("directory", type=PATH)
 def command(directory: str) -> None:
-    """Draw the pictures of the run in DIRECTORY again, and its page, from what it holds, into its report/."""
+    """Draw the page and the pictures of the run in DIRECTORY again, in its folder report/."""
     from ..errors import CaseError, MpmkitError, reason
     from ..report import write_report
 
@@ -24,7 +24,7 @@ def command(directory: str) -> None:
         written = write_report(Path(directory))
     except MpmkitError:
         raise
-    except Exception as error:  # a file of the run that someone has changed or cut off
+    except Exception as error:  # a file of the run is damaged
         raise CaseError(f"the report of '{directory}' cannot be made: {reason(error)}") from None
     for path in written:
         echo(str(path))

@@ -16,14 +16,14 @@ from .printing import echo
     "rerun", "mpmkit run cases/slump_fast.json --until 0.2 --out runs/short", "mpmkit rerun runs/short"
 )
 @click.argument("directory", type=PATH)
-@click.option("--out", type=PATH, metavar="DIR", help="Where to; default: DIRECTORY-rerun.")
+@click.option("--out", type=PATH, metavar="DIR", help="Directory of the new run; default: DIRECTORY-rerun.")
 @options.threads
 @options.overwrite
 @options.quiet
 def command(directory: str, out: str | None, threads: int | None, overwrite: bool, quiet: bool) -> None:
-    """Repeat the run in DIRECTORY from what it holds, and say whether it comes to the same bits.
+    """Repeat the run in DIRECTORY, and compare the results bit by bit.
 
-    The exit status is 1 where it does not.
+    The exit status is 1 if they differ.
     """
     from ..running.interrupts import take_signals_as_interrupts
     from ..running.rerun import first_difference, history_of, made_differently

@@ -34,24 +34,24 @@ if TYPE_CHECKING:
 @click.option(
     "--watch",
     is_flag=True,
-    help="Serve the page of the run while it is at work, on this machine alone, and print its address.",
+    help="Serve the page of the run while it runs, only on this machine, and print the address.",
 )
 @click.option("--open", "opened", is_flag=True, help="Open that page in a browser; includes --watch.")
-@click.option("--plot", is_flag=True, help="Plot the spread, or what moves, in the terminal meanwhile.")
+@click.option("--plot", is_flag=True, help="Plot the spread, or what changes, in the terminal meanwhile.")
 @click.option(
     "--checkpoint-every",
     type=SECONDS,
     metavar="TIME",
-    help="Wall time between two checkpoints, such as 60s, 10min or 1h; on Ctrl-C, and before the last step, "
-    "there is one in any case.",
+    help="Wall time between two checkpoints, such as 60s, 10min or 1h. One is always written on Ctrl-C and "
+    "before the last step.",
 )
 @click.option(
     "--resume",
     "stopped",
     type=PATH,
     metavar="DIR",
-    help="Go on with the run in this directory from its last checkpoint; CASE may be left out. With --until, "
-    "a run that has finished goes on to a later time.",
+    help="Continue the run in this directory from its last checkpoint; CASE may be left out. With --until, "
+    "a finished run is continued to a later time.",
 )
 def command(
     case: str | None,
@@ -69,11 +69,11 @@ def command(
 ) -> None:
     """Run CASE and write its history, frames, summary and report into a run directory."""
     if stopped is not None and (out is not None or overwrite):
-        raise click.UsageError("--resume goes on in its own directory: leave out --out and --overwrite")
+        raise click.UsageError("--resume continues in its own directory: leave out --out and --overwrite")
     if stopped is None and case is None:
         raise click.UsageError("Missing argument 'CASE'")
     if stopped is not None and case is None and overrides:
-        raise click.UsageError("--resume goes on with the case as it was: leave out --set")
+        raise click.UsageError("--resume continues with the case as it was: leave out --set")
 
     if quiet and (watch or opened or plot):
         raise click.UsageError("--watch, --open and --plot show something: leave out --quiet")
@@ -105,21 +105,21 @@ def perform(
     plot: bool = False,
     **settings: Any,
 ) -> None:
-    """Run or go on in a directory, and show what a person wants to see of it.
+    """Run a case in a directory, or continue its run, with the display that the options ask for.
 
     Args:
         directory: of the run.
-        quiet: whether to show nothing but errors.
-        resumed: whether the run goes on.
+        quiet: whether to show only errors.
+        resumed: whether a run is continued.
         case: the case; None for that of the directory.
-        watch: whether to serve its page meanwhile.
+        watch: whether to serve its page during the run.
         opened: whether to open that page in a browser.
         plot: whether to plot its history in the terminal.
         settings: for ``run``, or for ``resume``.
     """
     from contextlib import nullcontext, suppress
 
-    import numpy as np  # from here on, after the case is read: a bad case is refused without loading all this
+    import numpy as np  # imported after the case is read: a bad case is refused faster
 
     from ..errors import Undrawn
     from ..output.netcdf import leave_dask_out
@@ -136,7 +136,7 @@ def perform(
         else:
             run(case, directory, listen=listen, **settings)
 
-    with np.errstate(all="ignore"):  # its guard reports a run that diverges, not every array
+    with np.errstate(all="ignore"):  # a guard reports a run that diverges; warnings of NumPy are not needed
         if quiet:
             with suppress(Undrawn):
                 go(None)
@@ -152,13 +152,13 @@ def perform(
         ):
             try:
                 go(display)
-            except Undrawn as undrawn:  # the run itself has come to its end
+            except Undrawn as undrawn:  # the run itself has finished
                 say(f"warning: {undrawn}", style="yellow")
     show_summary(directory)
 
 
 def _served(directory: Path, resumed: bool, opened: bool, display: Display) -> Watch:
-    """Serve the page of a run; its address is said once it is known, and the run has not been refused."""
+    """Serve the page of a run; the address is printed when it is known and the run has started."""
     from ..watch import Watch
     from .display import say
 

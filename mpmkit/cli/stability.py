@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +13,12 @@ from . import options
 from .command import with_examples
 from .paths import PATH, refuse_existing
 from .printing import echo, echo_json
+
+if TYPE_CHECKING:
+    from ..stability.trial import Trace
+
+SAID_EVERY = 10.0
+"""Seconds between two lines about the trials of one combination."""
 
 
 def _names(kind: str):
@@ -50,7 +58,7 @@ def command(
 ) -> None:
     """Find the largest stable time step of CASE for every combination of the schemes named.
 
-    A step is stable if it creates no energy and no momentum, and leads where a fine solution leads.
+    A step is stable if it creates no energy and no momentum, and the particles stay close to a fine solution.
     """
     from dataclasses import asdict
 
@@ -59,26 +67,25 @@ def command(
     from ..stability import combinations, critical_fraction
     from ..stability.figure import draw, picture_in
     from ..stability.page import write_page
-    from ..stability.trial import Trace
     from ..stability.trials import Trials
     from .display import say
 
     data = apply_overrides(read_case(case), options.with_until(overrides, until))
     given = {"shape": shape, "order": order, "velocity": velocity, "volumetric": volumetric, "law": law}
     directory = Path(out) if out is not None else Path("runs") / f"stability-{data['name']}"
-    refuse_existing(picture_in(directory), overwrite)  # before hours are spent on it
+    refuse_existing(picture_in(directory), overwrite)  # before the search, which may take hours
     if isinstance(data.get("until"), dict):
         say("until has conditions: every combination is tried to until.at_most")
     chosen = {kind: names.split(",") for kind, names in given.items() if names}
     rows: list[dict] = []
     trials: list[Trials] = []
     for labels, combination in list(combinations(data, chosen)):
-        kept: dict[float, Trace] = {}
-        found = critical_fraction(combination, keep=kept.__setitem__)
-        trials.append(Trials.of(found, kept))
+        kept = _Kept(", ".join(labels.values()) or str(data["name"]))
+        found = critical_fraction(combination, keep=kept)
+        trials.append(Trials.of(found, kept.traces))
         rows.append(labels | asdict(found))
         if not as_json:
-            say(f"{', '.join(labels.values()) or data['name']}: {_stable(rows[-1])}")
+            say(f"{kept.label}: {_stable(rows[-1])}")
     if as_json:
         finite = [{k: None if v == math.inf else v for k, v in row.items()} for row in rows]
         echo_json(finite)
@@ -88,6 +95,23 @@ def command(
     page = write_page(rows, list(chosen), str(data["name"]), directory, trials)
     if not as_json:
         echo(f"map in {path} and {page}")
+
+
+class _Kept:
+    """The traces of the trials of one combination, by their fractions; long searches report them."""
+
+    def __init__(self, label: str) -> None:
+        self.label = label
+        self.traces: dict[float, Trace] = {}
+        self._said = time.monotonic()
+
+    def __call__(self, fraction: float, trace: Trace) -> None:
+        from .display import say
+
+        self.traces[fraction] = trace
+        if time.monotonic() - self._said >= SAID_EVERY:
+            self._said = time.monotonic()
+            say(f"{self.label}: trial {len(self.traces)}, at {fraction:.3g} of the limit, has ended")
 
 
 def _stable(row: dict) -> str:

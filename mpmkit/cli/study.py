@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from . import options
 from .command import with_examples
+from .many_runs import ManyRuns, study_runs
 from .paths import PATH
 from .printing import echo
 
@@ -20,21 +19,8 @@ if TYPE_CHECKING:
 
 @with_examples("study", "mpmkit study cases/studies/yield_stress_fast.json")
 @click.argument("study", type=PATH)
-@options.study_out
-@options.study_overwrite
-@options.workers
-@options.member_threads
-@options.scheduler
-@options.quiet
-def command(
-    study: str,
-    out: str | None,
-    overwrite: bool,
-    workers: int | None,
-    threads: int | None,
-    scheduler: str | None,
-    quiet: bool,
-) -> None:
+@study_runs("runs/<study name>")
+def command(study: str, how: ManyRuns) -> None:
     """Run the variations that STUDY describes, and write one dataset, figures, a table and a page.
 
     Members that have run already, of the same case and with the same versions, are not run again.
@@ -42,18 +28,10 @@ def command(
     """
     from ..study import load_study
 
-    run_study(load_study(study), out, overwrite, workers, threads, scheduler, quiet)
+    run_study(load_study(study), how)
 
 
-def run_study(
-    study: Study,
-    out: str | None,
-    overwrite: bool,
-    workers: int | None,
-    threads: int | None,
-    scheduler: str | None,
-    quiet: bool,
-) -> None:
+def run_study(study: Study, how: ManyRuns) -> None:
     """Run a study in its directory and print its results.
 
     Raises:
@@ -70,20 +48,21 @@ def run_study(
     from ..study.store import Store
 
     members = members_of(study)
-    store = Store(Path(out) if out is not None else Path("runs") / study.name, overwrite)
+    store = Store(how.directory(study.name), how.overwrite)
+    threads = how.threads or study.threads
     take_signals_as_interrupts()
     # The cluster first: if there is none, nothing is written.
-    with _cluster(scheduler) as executor, store.claimed(study, members):
-        at_once = workers or max(1, cores() // (threads or study.threads))
-        progress = None if quiet else _progress(study, members, store, at_once, threads or study.threads)
+    with how.cluster() as executor, store.claimed(study, members):
+        at_once = how.workers or max(1, cores() // threads)
+        progress = None if how.quiet else _progress(study, members, store, at_once, threads)
         with progress or nullcontext():
             try:
                 execute(
                     members,
                     store,
-                    threads or study.threads,
+                    threads,
                     executor=executor,
-                    workers=workers,
+                    workers=how.workers,
                     listen=progress,
                     page=NAME if study.pages else None,
                 )
@@ -94,7 +73,7 @@ def run_study(
                 ) from None
             finally:
                 store.write(collect(study, members, store))
-    if not quiet:
+    if not how.quiet:
         echo((store.path / "table.md").read_text(encoding="utf-8"), nl=False)
         echo(f"results in {store.path}; open {store.path / NAME} in a browser")
     failed = [member.title for member in members if not store.settled(member)]
@@ -117,13 +96,3 @@ def _progress(study: Study, members: list[Member], store: Store, at_once: int, t
             say(f"{member.title}: '{damaged}' is damaged; the member is run again")
     waiting = [member for member in members if not store.settled(member)]
     return StudyProgress(study.name, waiting, len(members) - len(waiting), at_once, threads)
-
-
-def _cluster(scheduler: str | None):
-    from contextlib import nullcontext
-
-    if scheduler is None:
-        return nullcontext()
-    from ..study.cluster import cluster
-
-    return cluster(scheduler)

@@ -1,4 +1,4 @@
-"""A plot of a history in the terminal, of dots that are smaller than a letter."""
+"""A plot of a history in the terminal, made of Braille dots."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     import xarray
 
 WIDTH, HEIGHT = 60, 10
-"""Letters of the plot."""
+"""Size of the plot in characters."""
 DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
-"""Bits of Unicode's Braille letters: four rows of two dots."""
+"""Bits of the Braille characters of Unicode: four rows of two dots."""
 BLANK = 0x2800
 CHOICE = (
     ("spread_diameter", 1e3, "spread (mm)"),
     ("height", 1e3, "height (mm)"),
     ("kinetic_energy", 1, "kinetic energy (J)"),
 )
-"""What is plotted: the first that changes; name, scale and label."""
+"""Variables to plot, of which the first that changes is chosen: name, scale and label."""
 
 
 def plot(time: np.ndarray, values: np.ndarray, until: float, label: str) -> list[str]:
@@ -50,7 +50,7 @@ def plot(time: np.ndarray, values: np.ndarray, until: float, label: str) -> list
 
 
 class HistoryPlot:
-    """The plot of a run at work, drawn anew when its history has changed."""
+    """The plot of a run in progress, drawn again when its history has changed."""
 
     def __init__(self, directory: Path) -> None:
         self._path = RunDirectory(directory).history
@@ -58,7 +58,7 @@ class HistoryPlot:
         self.lines: list[str] = []
 
     def look(self, until: float) -> None:
-        """Read the history if there is another one; a run is not worth ending for it."""
+        """Read the history if it has changed; errors are ignored, because they must not stop the run."""
         written = self._written()
         if written in (None, self._seen):
             return

@@ -1,8 +1,9 @@
-"""What a plug-in author needs: one contract a kind, and the marker that registers an implementation."""
+"""The interface for authors of plug-ins: one contract for each kind, and the marker of the hooks."""
 
 from . import maxwell, tensors
 from .base import API_VERSION, OLDEST_API_VERSION, Plugin, quantity
 from .body_force import BodyForce
+from .body_shape import AnyShape, BodyShape
 from .contact import Contact, ContactNodes
 from .diagnostic import Column, Diagnostic, Observed, ParticleField
 from .elastoviscoplastic import ElastoviscoplasticLaw
@@ -19,6 +20,7 @@ from .redistribution import Cells, Lattice, Redistributing, Redistribution
 from .refinement import Refinement, Refining
 from .shape import ShapeFunction
 from .sink import Sink
+from .solid import Solid
 from .source import Mouth, Source
 from .surface import PlacedSurface, Space, Surface
 from .table import require_table
@@ -31,8 +33,10 @@ __all__ = [
     "KINDS",
     "OLDEST_API_VERSION",
     "REST_SHEAR_RATE",
+    "AnyShape",
     "Beginning",
     "BodyForce",
+    "BodyShape",
     "Cells",
     "Column",
     "ConstitutiveLaw",
@@ -60,6 +64,7 @@ __all__ = [
     "Refining",
     "ShapeFunction",
     "Sink",
+    "Solid",
     "Source",
     "Space",
     "StateVariable",

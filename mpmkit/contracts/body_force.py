@@ -13,9 +13,9 @@ from .base import Plugin
 from .surface import Space
 
 TIMES = 257
-"""Times at which ``largest`` looks."""
+"""Number of times at which ``largest`` takes samples."""
 PLACES = (0.0, 0.5, 1.0)
-"""Parts of the box along each axis at which it looks."""
+"""Places in the box along each axis at which ``largest`` takes samples, as parts of its side."""
 
 
 class BodyForce(Plugin):
@@ -69,7 +69,7 @@ class BodyForce(Plugin):
         return np.max(found, axis=0)
 
     def settles(self) -> float:
-        """Time, s, from which on it no longer changes; default: never. A run is not at rest before it."""
+        """Time, s, from which on the force is constant; default: never. A run does not end at rest before."""
         return -math.inf if self.constant else math.inf
 
     def shortest_period(self) -> float:

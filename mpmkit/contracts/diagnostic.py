@@ -1,4 +1,4 @@
-"""Contracts of what is measured of a scene: columns of the history, and fields of particles."""
+"""Contracts of measured quantities: columns of the history, and fields of particles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ class Column:
 
 
 class Observed(Protocol):
-    """A scene as diagnostics and particle fields see it. Arrays have an entry a particle, and are read-only.
+    """A scene as diagnostics and particle fields see it. Arrays have an entry for each particle, and are
+    read-only.
 
     Places are in the coordinates of the case. In two dimensions the axes of tensors are the two of the grid
     and the one out of the plane; volumes and masses are per metre of depth in plane strain, and of the whole
@@ -45,7 +46,7 @@ class Observed(Protocol):
 
     @property
     def number(self) -> np.ndarray:
-        """(n,) what each particle is called"""
+        """(n,) number of each particle, which it keeps for the whole run"""
 
     @property
     def body(self) -> np.ndarray:
@@ -92,7 +93,7 @@ class Observed(Protocol):
         """(n, 3, 3) 1/s"""
 
     def state(self, name: str) -> np.ndarray:
-        """A state variable of the laws, ``(n,)`` or ``(n, k)``; not a number where a law has none such."""
+        """A state variable of the laws, ``(n,)`` or ``(n, k)``; ``nan`` where a law has no such variable."""
 
     def wall_distance(self, name: str) -> np.ndarray:
         """Distance, m, ``(n,)``, of the particles' places from a wall of the case, or a face of its grid."""
@@ -113,11 +114,11 @@ class Diagnostic(Plugin):
 
     @abstractmethod
     def columns(self, space: Space) -> Sequence[Column]:
-        """What it measures, always the same."""
+        """The columns that it measures; the same for the whole run."""
 
     @abstractmethod
     def measure(self, scene: Observed) -> Mapping[str, float]:
-        """A number for each column, by its name; ``nan`` where there is none."""
+        """A number for each column, by its name; ``nan`` if there is none."""
 
 
 class ParticleField(Plugin):
@@ -134,4 +135,4 @@ class ParticleField(Plugin):
 
     @abstractmethod
     def values(self, scene: Observed) -> np.ndarray:
-        """The field, ``(n, *shape)``, each entry of its own particle alone."""
+        """The field, ``(n, *shape)``, each entry computed from its own particle only."""

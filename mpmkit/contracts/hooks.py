@@ -12,6 +12,7 @@ import pluggy
 
 from .base import Plugin
 from .body_force import BodyForce
+from .body_shape import BodyShape
 from .contact import Contact
 from .diagnostic import Diagnostic, ParticleField
 from .equation_of_state import EquationOfState
@@ -73,6 +74,11 @@ def mpmkit_refinements() -> Iterable[type[Refinement]]:  # type: ignore[empty-bo
 
 
 @hookspec
+def mpmkit_body_shapes() -> Iterable[type[BodyShape]]:  # type: ignore[empty-body]
+    """Body shapes of this module."""
+
+
+@hookspec
 def mpmkit_surfaces() -> Iterable[type[Surface]]:  # type: ignore[empty-body]
     """Surfaces of this module."""
 
@@ -121,6 +127,7 @@ KINDS: dict[str, tuple[str, type[Plugin]]] = {
     "redistribution": ("mpmkit_redistributions", Redistribution),
     "refinement": ("mpmkit_refinements", Refinement),
     "equation_of_state": ("mpmkit_equations_of_state", EquationOfState),
+    "body_shape": ("mpmkit_body_shapes", BodyShape),
     "surface": ("mpmkit_surfaces", Surface),
     "contact": ("mpmkit_contacts", Contact),
     "body_force": ("mpmkit_body_forces", BodyForce),

@@ -14,11 +14,11 @@ from .surface import Space
 
 @dataclass(frozen=True)
 class Beginning:
-    """What an initial field knows of a body at the start. Arrays are read-only."""
+    """Data of a body at the start, for an initial field. Arrays are read-only."""
 
     space: Space
     field: str
-    """What is asked for: ``velocity``, ``stress``, or ``law.`` and the name of a state variable."""
+    """Name of the field: ``velocity``, ``stress``, or ``law.`` and the name of a state variable."""
     shape: tuple[int, ...]
     """Shape of a value: ``(dim,)``, m/s, for a velocity; ``(6,)``, Pa, for a stress; that of the state."""
     position: np.ndarray
@@ -46,7 +46,7 @@ class InitialField(Plugin):
 
     @abstractmethod
     def at(self, start: Beginning) -> np.ndarray:
-        """The field at the places, ``(n, *shape)``, each entry of its own place alone.
+        """The field at the places, ``(n, *shape)``, each entry computed from its own place only.
 
         A stress is positive in tension, in the order of the laws: 00, 11, 22, 12, 02, 01 of its axes.
         """

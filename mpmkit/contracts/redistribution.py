@@ -11,7 +11,7 @@ from .base import Plugin
 
 
 class Lattice(Protocol):
-    """Nodes at equal distances over the material, each with its quadratic B-spline, mirrored at walls.
+    """Evenly spaced nodes over the material with quadratic B-splines, mirrored at walls.
 
     Arrays of nodes have the shape ``(nodes,)``, arrays of particles ``(n,)`` or ``(n, dim)``.
     """
@@ -23,7 +23,7 @@ class Lattice(Protocol):
         """κ_n = Σ size_p N_np / room_n: 1 inside the material, less at its surface."""
 
     def average(self, values: np.ndarray) -> np.ndarray:
-        """Σ size_p N_np f_p / Σ size_p N_np of a particle field; zero where nothing is."""
+        """Σ size_p N_np f_p / Σ size_p N_np of a particle field; zero where there is no material."""
 
     def at_particles(self, nodal: np.ndarray) -> np.ndarray:
         """Σ N_np f_n, ``(n,)``."""
@@ -32,7 +32,9 @@ class Lattice(Protocol):
         """Σ ∇N_np f_n, ``(n, dim)``, 1/m."""
 
     def least_around(self, nodal: np.ndarray) -> np.ndarray:
-        """The least of a node and all its neighbours, corners included; nodes that are not stored count 0."""
+        """Smallest value of a node and all its neighbours, corners included; nodes that are not stored have
+        the value 0.
+        """
 
     def nearest(self, other: Lattice, nodal: np.ndarray) -> np.ndarray:
         """Values of the nodes of another lattice at the nodes of this one, each from the nearest."""
@@ -45,33 +47,44 @@ class Cells(Protocol):
         """Q_c = Σ w_p size_p part_pc / size of the cell, ``(cells,)``; default of w_p: 1."""
 
     def least_beside(self, filling: np.ndarray) -> np.ndarray:
-        """The least of a cell and those that share a face with it."""
+        """Smallest value of a cell and of the cells that share a face with it."""
 
     def at_particles(self, values: np.ndarray) -> np.ndarray:
         """Σ part_pc f_c, ``(n,)``."""
 
 
 class Redistributing(Protocol):
-    """What a redistribution works on. Sizes are areas V / (2 π r) in axisymmetric scenes, else volumes."""
+    """Access of a redistribution to the scene.
+
+    Sizes are areas V / (2 π r) in axisymmetric scenes, else volumes.
+    """
 
     nodes: Lattice
     """The nodes of the grid."""
     places: Lattice
-    """A lattice as fine as the particles are apart."""
+    """A lattice with the spacing of the particles."""
 
     @property
     def time(self) -> float:
         """Time at the start of the step, s."""
 
     def cells(self) -> Cells:
-        """The cells of the grid, with the boxes as they are now."""
+        """The cells of the grid, with the present boxes."""
 
     def shear_rate(self) -> np.ndarray:
         """γ̇ = √(2 D':D') of each particle, 1/s, ``(n,)``, and at most twice the largest mean since the last
-        time: where flow sets in at a stroke, the rate of the moment is not that of all this time."""
+        redistribution: if a flow starts suddenly, the present rate is not the rate of that whole time.
+        """
 
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
-        """J ← factor J, for fluids only."""
+        """J ← factor J, for fluids only, at once: the pressure jumps by ρ c² (1 - factor)."""
+
+    def expand(self, strain: np.ndarray) -> None:
+        """ln J ← ln J + strain, for fluids only.
+
+        The strain is applied gradually, in proportion to the shear that follows, over the same shear as since
+        the last redistribution. The next call replaces the part that is not applied yet.
+        """
 
     def shift(self, displacement: np.ndarray) -> None:
         """x ← x + δx, for fluids only, not beyond walls; v changes by its affine part; Σ m v is kept."""
@@ -81,7 +94,7 @@ class Redistributing(Protocol):
 
 
 class Redistribution(Plugin):
-    """How volume, box and position of the particles are kept consistent in long shear."""
+    """Keeps volume, box and position of the particles consistent in long shear."""
 
     equal_boxes: ClassVar[bool] = False
     """Whether boxes have equal sides and hold the volume. Otherwise they follow the normal strain, and J is

@@ -10,7 +10,7 @@ from .base import Plugin
 
 
 class Refining(Protocol):
-    """What a refinement works on. Arrays have an entry a particle, ``(n,)``, as the particles are now.
+    """Access of a refinement to the scene. Arrays have an entry for each present particle, ``(n,)``.
 
     After ``split`` and ``merge`` the particles are different: read the arrays again.
     """
@@ -25,14 +25,17 @@ class Refining(Protocol):
         """Sides of the boxes along each axis, in cells, ``(n, dim)``."""
 
     def portion(self) -> np.ndarray:
-        """How much of a particle of the start each is: one at first, half of its parent's for a half, the sum
-        where two are merged. Over all particles it always adds up to their number at the start."""
+        """The portion of each particle: its part of an initial particle.
+
+        It is 1 at the start, half of the parent's after a split, and the sum of both after a merge. The sum
+        over all particles is always their number at the start.
+        """
 
     def count(self) -> np.ndarray:
-        """Particles of the same material in the cell of each."""
+        """Number of particles of the same material in the cell of each particle."""
 
     def full(self) -> np.ndarray:
-        """Particles that a full cell of its body has at the start."""
+        """Number of particles in a full cell of its body at the start."""
 
     def with_room(self, which: np.ndarray, axis: int) -> np.ndarray:
         """Of the particles ``which`` (True or False), those whose halves find room; True or False.

@@ -1,4 +1,4 @@
-"""Contract of a source: where material comes into the scene, and how fast."""
+"""Contract of a source, which brings material into the scene: its place and its speed."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Source(Plugin):
         """Upper bound, m/s, of the speed |w| of the column between two times, s."""
 
     def moved(self, t: float) -> np.ndarray | float:
-        """Displacement u of the mouth since the start, m, ``(dim,)``; default: it is at rest."""
+        """Displacement u of the mouth since the start, m, ``(dim,)``; default: 0."""
         return 0.0
 
     def spell(self, area: float, density: float) -> tuple[float, float]:

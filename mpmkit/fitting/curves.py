@@ -39,10 +39,20 @@ def read_curve(where: str, measurement: Measurement, unit: str) -> Curve:
     try:
         with path.open(encoding="utf-8-sig", newline="") as lines:
             reader = csv.DictReader(line for line in lines if not line.startswith("#"))
-            rows, headings = list(reader), [str(name) for name in reader.fieldnames or ()]
+            rows, headings = [dict(row) for row in reader], [str(name) for name in reader.fieldnames or ()]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or "it is not a CSV file in UTF-8"
         raise CaseError(f"{where}.file: '{path}' cannot be read: {reason}") from None
+    twice = [name for number, name in enumerate(headings) if name in headings[:number]]
+    if twice:
+        raise CaseError(f"{where}.file: '{path}' has two columns '{twice[0]}'; rename one of them")
+    for number, cells in enumerate(rows, start=1):
+        more = cells.get(None)  # the cells beyond the headings
+        if more:
+            raise CaseError(
+                f"{where}.file: '{path}', row {number} has {len(headings) + len(more)} cells, and there "
+                f"are {len(headings)} columns; decimals are written with a point"
+            )
     columns = measurement.columns
     value = columns.value or f"{measurement.variable}_{unit}"
     time = _column(where, path, rows, headings, "time", columns.time)
@@ -86,7 +96,8 @@ def _column(where: str, path: Path, rows: list, headings: list[str], role: str, 
             if not math.isfinite(found[number - 1]):
                 raise ValueError
         except (TypeError, ValueError):
+            given = "missing" if row[name] is None else f"'{row[name]}'"
             raise CaseError(
-                f"{where}.file: '{path}', row {number}: {name} is '{row[name]}'; it must be a finite number"
+                f"{where}.file: '{path}', row {number}: {name} is {given}; it must be a finite number"
             ) from None
     return found

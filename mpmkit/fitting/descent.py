@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from .coordinates import Coordinates
 from .misfit import Misfit
@@ -21,11 +21,16 @@ REFUSED = 1e3
 """Residual of every row if a guard stopped the run: the search then rejects the step and shortens it."""
 
 
+class _Converged(Exception):
+    """The next step would gain too little."""
+
+
 class Descent:
     """A search in one stage.
 
     Each point is run together with its neighbours, which are needed next if the step is accepted. So all
-    cores are used, and the runs are the same on any number of cores.
+    cores are used, and the runs are the same on any number of cores. A step from which the derivatives
+    promise too little is not made: SciPy would make its runs only to find this confirmed.
 
     Args:
         runs: of the tests.
@@ -59,7 +64,14 @@ class Descent:
         require(first)
         measure = misfit(first)
 
+        known: dict[str, np.ndarray] = {}
+
         def residuals(u: np.ndarray) -> np.ndarray:
+            if known:
+                before = known["r"]
+                after = before + known["slopes"] @ (u - known["u"])
+                if before @ before - after @ after < TOLERANCE * before @ before:
+                    raise _Converged
             point = self.points(u)[0]
             if point.predicted is None:
                 return np.full(len(measure) + len(self._coordinates.prior_residuals(u)) + 1, REFUSED)
@@ -73,9 +85,22 @@ class Descent:
             likely = np.stack(
                 [measure.whitened(other - here) / h for other, h in zip(others, steps, strict=True)], axis=1
             )
-            return np.vstack([likely, self._prior_slopes(u), np.zeros(len(u))])
+            found = np.vstack([likely, self._prior_slopes(u), np.zeros(len(u))])
+            known.update(u=u, slopes=found)
+            known["r"] = np.concatenate(
+                [measure.residuals(here), self._coordinates.prior_residuals(u), [FLOOR]]
+            )
+            return found
 
-        found = least_squares(
+        try:
+            found = self._search(residuals, slopes, inside)
+        except _Converged:
+            return known["u"]
+        return np.asarray(found.x)
+
+    @staticmethod
+    def _search(residuals: Callable, slopes: Callable, inside: np.ndarray) -> OptimizeResult:
+        return least_squares(
             residuals,
             inside,
             slopes,
@@ -86,7 +111,6 @@ class Descent:
             gtol=None,
             max_nfev=MOST_STEPS,
         )
-        return np.asarray(found.x)
 
     def _prior_slopes(self, u: np.ndarray) -> np.ndarray:
         at = self._coordinates.prior_residuals

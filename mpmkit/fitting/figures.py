@@ -61,9 +61,9 @@ def _fitted(result: FitResult) -> Figure:
                 curves.append((test, one, rows))
             else:
                 numbers.append((test, one, rows.start))
-    count = len(curves) + bool(numbers)
-    figure = Figure(figsize=(7.2, 4.2 * count), layout="constrained")
-    panels = list(np.atleast_1d(figure.subplots(count, 1)))
+    heights = [4.2] * len(curves) + ([1.2 + 0.6 * len(numbers)] if numbers else [])
+    figure = Figure(figsize=(7.2, sum(heights)), layout="constrained")
+    panels = list(np.atleast_1d(figure.subplots(len(heights), 1, height_ratios=heights)))
     for axes, (test, one, rows) in zip(panels, curves, strict=False):
         scale, unit = (MILLIMETRES, "mm") if one.quantity.unit == "m" else (1.0, one.quantity.unit)
         axes.errorbar(
@@ -163,7 +163,7 @@ def _profile(result: FitResult) -> Figure:
     figure = Figure(figsize=(7.2, 4.4), layout="constrained")
     axes = figure.add_subplot()
     values = np.array([solution.coordinates.value(0, u) for u in interval.place])
-    axes.plot(values[shown], interval.excess[shown], color=BLUE, label="through the runs")
+    axes.plot(values[shown], interval.excess[shown], color=BLUE, label="surface through the runs")
     runs = [p for p in solution.runs.points if p.stage == solution.stage and p.predicted is not None]
     chi2 = [
         float(np.sum(solution.survey.likelihood.misfit.residuals(p.predicted.value) ** 2))

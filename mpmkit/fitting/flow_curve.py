@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from ..case.parameters import BLOCK
 from ..rheology.flow_curve import flow_curve
 from ..study.members import Member
 from .region import region
@@ -39,9 +39,8 @@ def flow_curves(solution: Solution, level: float) -> list[FlowCurve]:
     Raises:
         Spent: the budget is too small for the run that gives the reached shear rates.
     """
-    bodies = sorted(
-        {int(path.split(".")[1]) for path in solution.coordinates.paths if _field(path) is not None}
-    )
+    fields = _fields(solution)
+    bodies = sorted({body for body, _ in fields})
     if not bodies:
         return []
     reached = _reached(solution.runs, solution.values)
@@ -51,26 +50,33 @@ def flow_curves(solution: Solution, level: float) -> list[FlowCurve]:
     points = [solution.coordinates.values(u) for u in region(solution, level)]
     found = []
     for body in bodies:
-        curves = [curve for point in points if (curve := _curve(solution, body, point, rates)) is not None]
+        own = {field: path for (of, field), path in fields.items() if of == body}
+        law = solution.runs.tests[0].stages[-1].case.bodies[body].material.constitutive_law
+        laws = [law.model_copy(update={f: point[path] for f, path in own.items()}) for point in points]
+        curves = [curve for one in laws if (curve := flow_curve(one, rates)) is not None]
         if curves:
             found.append(FlowCurve(body, rates, curves[0], np.min(curves, axis=0), np.max(curves, axis=0)))
     return found
 
 
-def _field(path: str) -> str | None:
-    """The parameter of a law at a path such as ``bodies.0.material.yield_stress``; None for other paths."""
-    keys = path.split(".")
-    return keys[3] if len(keys) == 4 and keys[0] == "bodies" and keys[2] == "material" else None
+def _fields(solution: Solution) -> dict[tuple[int, str], str]:
+    """The path that gives each fitted parameter of a law, by the number of its body and its name.
 
-
-def _curve(solution: Solution, body: int, values: dict[str, float], rates: np.ndarray) -> np.ndarray | None:
-    law = solution.runs.tests[0].stages[-1].case.bodies[body].material.constitutive_law
-    own: dict[str, Any] = {
-        str(_field(path)): value
-        for path, value in values.items()
-        if path.startswith(f"bodies.{body}.") and _field(path) in type(law).model_fields
-    }
-    return flow_curve(law.model_copy(update=own), rates)
+    A path leads to it directly, as ``bodies.0.material.yield_stress``, or by a parameter at the top of the
+    case with the same value.
+    """
+    stage, values, found = solution.runs.tests[0].stages[-1], solution.values, {}
+    for path in solution.coordinates.paths:
+        keys = path.split(".")
+        if len(keys) == 4 and keys[0] == "bodies" and keys[2] == "material":
+            found[int(keys[1]), keys[3]] = path
+        elif keys[0] == BLOCK:
+            for body, entry in enumerate(stage.member(values).case.bodies):
+                for field, value in entry.material.constitutive_law.model_dump().items():
+                    if value == values[path]:
+                        found[body, field] = path
+    laws = [body.material.constitutive_law for body in stage.case.bodies]
+    return {place: path for place, path in found.items() if place[1] in type(laws[place[0]]).model_fields}
 
 
 def _reached(runs: Runs, values: dict[str, float]) -> tuple[float, float] | None:

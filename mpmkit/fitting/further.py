@@ -58,7 +58,7 @@ def further(solution: Solution) -> list[Further]:
             if not np.isfinite(row).all() or not np.abs(row).max() > 0:
                 continue
             part = OF_TIMES if quantity.is_time else OF_LENGTHS
-            known = Surrogate(u, row[:, None], weight, np.array([np.abs(row).max()]))
+            known = Surrogate(u, row[:, None], row[:, None], weight, np.array([np.abs(row).max()]))
             slope = known.slopes(solution.survey.best)[0]
             noise = math.hypot(part * abs(float(known(solution.survey.best)[0])), float(known.error[0]))
             gain = covariance @ slope

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 import xarray
 
+from ..case.ending import Until
 from ..case.model import Case
 from ..case.synonyms import nearest
 from ..errors import CaseError
 from .curves import read_curve
 from .model import Measurement, Test
-from .quantities import FIGURES, HISTORIES, Quantity
+from .quantities import FIGURES, HISTORIES, Quantity, check_part
 
 CORRELATION = 0.5
 """Correlation time of the model's error, relative to the duration of a curve."""
@@ -56,39 +57,43 @@ class Predicted:
     scale: np.ndarray
 
 
-def measured_in(name: str, test: Test) -> list[Measured]:
-    """The measurements of a test.
+def measured_in(name: str, test: Test, case: Case) -> list[Measured]:
+    """The measurements of a test, with its case.
 
     Raises:
         CaseError: a variable does not exist, or a file is not valid.
     """
     return [
-        _measured(f"tests.{name}.measurements.{number}", measurement)
+        _measured(f"tests.{name}.measurements.{number}", measurement, case)
         for number, measurement in enumerate(test.measurements)
     ]
 
 
-def _measured(where: str, measurement: Measurement) -> Measured:
+def _measured(where: str, measurement: Measurement, case: Case) -> Measured:
     variable, of = measurement.variable, tuple(sorted(measurement.of.items()))
-    if variable not in FIGURES and variable not in HISTORIES:
-        known = [*FIGURES, *HISTORIES]
+    own = {name: (entry.unit, entry.description) for name, entry in case.measurements.items()}
+    if variable not in FIGURES and variable not in HISTORIES and variable not in own:
+        known = [*FIGURES, *HISTORIES, *own]
         meant = nearest(variable, known)
         hint = f"; did you mean '{meant}'?" if meant else ""
         raise CaseError(f"{where}.variable is '{variable}'; it must be one of {', '.join(known)}{hint}")
+    check_part(where, variable, measurement.of, case)
+    unit = own[variable][0] if variable in own else (FIGURES.get(variable) or HISTORIES[variable])[0]
     history = variable in HISTORIES
     timed = measurement.time is not None or measurement.reaches is not None
     if measurement.file is not None:
-        if not history:
+        if variable in FIGURES:
             raise CaseError(f"{where}: {variable} is one number per run; it cannot have a curve in a file")
-        curve = read_curve(where, measurement, HISTORIES[variable][0])
-        return Measured(where, Quantity(variable, tuple(curve.time), of=of), curve.value, curve.uncertainty)
-    if history != timed:
+        curve = read_curve(where, measurement, unit)
+        quantity = Quantity(variable, tuple(curve.time), of=of, own_unit=unit)
+        return Measured(where, quantity, curve.value, curve.uncertainty)
+    if history and not timed:
         raise CaseError(
             f"{where}: {variable} is a history; give the time at which it was measured, or the level that it "
             "reaches"
-            if history
-            else f"{where}: {variable} is one number per run; leave out time and reaches"
         )
+    if variable in FIGURES and timed:
+        raise CaseError(f"{where}: {variable} is one number per run; leave out time and reaches")
     value = measurement.value
     assert value is not None
     times = None if measurement.time is None else (measurement.time,)
@@ -96,38 +101,55 @@ def _measured(where: str, measurement: Measurement) -> Measured:
     if uncertainty <= 0:
         raise CaseError(f"{where}: a relative uncertainty of the value 0 is 0; give uncertainty instead")
     return Measured(
-        where, Quantity(variable, times, measurement.reaches, of), np.array([value]), np.array([uncertainty])
+        where,
+        Quantity(variable, times, measurement.reaches, of, unit),
+        np.array([value]),
+        np.array([uncertainty]),
     )
 
 
-def predicted(measured: list[Measured], summary: Mapping[str, Any], history: xarray.Dataset) -> Predicted:
-    """Predicted values of one run for the measurements of its test.
+def predicted(
+    measured: list[Measured], summary: Mapping[str, Any], history: xarray.Dataset, end: float
+) -> Predicted:
+    """Predicted values of one run for the measurements of its test; ``end``, s, is its latest end.
 
     Raises:
-        CaseError: the run has no such variable, wall or component.
+        CaseError: the run has no such value.
     """
-    found = []
-    for one in measured:
-        try:
-            found.append(one.quantity.of_run(summary, history))
-        except (KeyError, ValueError):
-            dimensions = (
-                [str(d) for d in history[one.quantity.variable].dims]
-                if (one.quantity.variable in history)
-                else []
-            )
-            choices = "; ".join(
-                f"{d} is one of {', '.join(map(str, history[d].values))}" for d in dimensions if d != "time"
-            )
-            raise CaseError(
-                f"{one.where}: the case gives no {one.quantity.variable} of "
-                f"{dict(one.quantity.of) or 'the whole scene'}{': ' if choices else ''}{choices}"
-            ) from None
+    found = [one.quantity.of_run(summary, history, end) for one in measured]
+    for one, (value, _) in zip(measured, found, strict=True):
+        if not np.isfinite(value).all():
+            raise CaseError(f"{one.where}: a run gave no {one.quantity.words}, so that it cannot be fitted")
     return Predicted(np.concatenate([y for y, _ in found]), np.concatenate([s for _, s in found]))
 
 
-def last_time(case: Case, measured: list[Measured]) -> float:
-    """End of the runs of a test, s: the end of its case, or the last row if all measurements have times."""
+@dataclass(frozen=True)
+class Bounds:
+    """What a run says of the rows: values between ``low`` and ``high``, ``(m,)``.
+
+    They are equal where the run gives a value. A run that material left before its end gives values up to
+    then, and for later rows what cannot go back: a spread is at least the last one.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+
+
+def bounds_of_stopped(
+    measured: list[Measured], summary: Mapping[str, Any], history: xarray.Dataset
+) -> Bounds:
+    """What a run says that ended because material left the domain."""
+    found = [one.quantity.of_stopped_run(summary, history) for one in measured]
+    return Bounds(np.concatenate([low for low, _ in found]), np.concatenate([high for _, high in found]))
+
+
+def end_of(case: Case, measured: list[Measured]) -> dict[str, Any] | float:
+    """End of the runs of a test: that of its case, or the last row if all measurements have times.
+
+    A run also ends at rest, if its case does: a row after that is the same.
+    """
+    until = case.until.model_dump(mode="json") if isinstance(case.until, Until) else case.until
     if any(one.quantity.times is None for one in measured):
-        return case.end
-    return min(case.end, max(float(one.time[-1]) for one in measured))
+        return until
+    last = min(case.end, max(float(one.time[-1]) for one in measured))
+    return {"rest": True, "at_most": last} if isinstance(until, dict) and until["rest"] else last

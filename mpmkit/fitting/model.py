@@ -25,6 +25,12 @@ Changes = Annotated[
 """New values by their paths in the case."""
 
 
+NARROWEST = 1e-3
+"""Least width of the bounds of a parameter, relative to its value."""
+MOST_DECADES = 1e9
+"""Largest ratio of the bounds on a logarithmic scale."""
+
+
 class Columns(Model):
     """Names of the columns of a CSV file."""
 
@@ -135,11 +141,22 @@ class Parameter(Model):
             raise ValueError(
                 f"low is {self.low:g}; on a logarithmic scale it must be above 0, or give scale 'linear'"
             )
+        widest, least = self.high - self.low, NARROWEST * max(abs(self.low), abs(self.high))
+        if widest < least:
+            raise ValueError(
+                f"low is {self.low:.9g} and high is {self.high:.9g}; they must differ by at least "
+                f"{NARROWEST:g} of the value"
+            )
+        if self.scale == "log" and self.high / self.low > MOST_DECADES:
+            raise ValueError(
+                f"low is {self.low:g} and high is {self.high:g}; high must be at most "
+                f"{MOST_DECADES:g} times low"
+            )
         if self.start is not None and not self.low <= self.start <= self.high:
             raise ValueError(f"start is {self.start:g}; it must be from {self.low:g} to {self.high:g}")
-        if self.prior is not None and self.scale == "log" and self.prior.value <= 0:
+        if self.prior is not None and not self.low <= self.prior.value <= self.high:
             raise ValueError(
-                f"prior.value is {self.prior.value:g}; on a logarithmic scale it must be above 0"
+                f"prior.value is {self.prior.value:g}; it must be from {self.low:g} to {self.high:g}"
             )
         return self
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from urllib.parse import quote
@@ -15,14 +14,16 @@ from ..output.atomic import replacing
 from ..report.page.assembled import assembled
 from ..report.page.section import Section, bullets, note, paragraph, table
 from ..version import __version__
-from .result import FitResult, Found, found_in
+from .result import FitResult, found_in, names_of
 from .runs import Point
 from .solve import Solution
 
 CAPTIONS = {
-    "fitted": "Measured and fitted values",
-    "misfit": "Misfit against the parameters, with the region that fits",
-    "flow_curve": "Flow curve with its band",
+    "fitted": "Measured and fitted values. The bars are standard uncertainties, and the band holds all "
+    "curves of parameters that fit.",
+    "misfit": "How well other values fit. Points are runs, and the red line is the limit of the values that "
+    "fit. √Δχ² is the distance from the best fit in standard deviations.",
+    "flow_curve": "Flow curve of the material, with the band of all parameters that fit.",
 }
 """What the pictures show, by the names of their files."""
 
@@ -45,7 +46,14 @@ def write_page(result: FitResult, pictures: list[Path], path: Path) -> None:
 
 
 def _parameters(result: FitResult) -> Section:
-    body = _table(result.parameters.values(), "Parameters") + bullets(result.sentences)
+    body = _table(result, result.solution, "Parameters")
+    for title, sentences in (
+        ("What these measurements cannot tell", result.unknown),
+        ("What else to measure", [result.advice]),
+        ("Remarks", result.remarks),
+    ):
+        if sentences:
+            body += f"<h3>{escape(title)}</h3>" + bullets(sentences)
     return Section("parameters", "Results", body)
 
 
@@ -58,21 +66,25 @@ def _laws(result: FitResult) -> Section | None:
         body += f"<h3>{escape(one.law)}</h3>" + paragraph(
             f"AICc {one.aicc:.4g}, {one.difference:.3g} from the best."
         )
-        body += _table(found_in(result.solutions[one.law], result.fit.level).values(), one.law)
+        body += _table(result, result.solutions[one.law], f"Parameters of {one.law}")
     return Section("laws", "Laws", body)
 
 
-def _table(parameters: Iterable[Found], caption: str) -> str:
+def _table(result: FitResult, solution: Solution, caption: str) -> str:
+    """The parameters by name; a value that is not known is not shown as if it were."""
+    names, level = names_of(solution), f"{100 * result.fit.level:g} %"
     rows = [
         (
+            names.label(found.path),
+            f"{found.value:.4g}" if found.identifiable else "not known",
+            f"{found.low:.4g}",
+            f"{found.high:.4g}",
             found.path,
-            *(f"{x:.4g}" for x in (found.value, found.low, found.high)),
-            found.unit,
-            f"at {100 * found.level:g} %" if found.identifiable else "not by these measurements",
         )
-        for found in parameters
+        for found in found_in(solution, result.fit.level).values()
     ]
-    return table(("parameter", "value", "from", "to", "unit", "known"), rows, caption)
+    headings = ("parameter", "value", "from", "to", "in the case")
+    return table(headings, rows, f"{caption}, with their intervals at {level}")
 
 
 def _figures(pictures: list[Path]) -> Section:
@@ -81,7 +93,9 @@ def _figures(pictures: list[Path]) -> Section:
         caption = escape(CAPTIONS[picture.stem])
         data = base64.b64encode(picture.read_bytes()).decode()
         body += (
-            f'<figure class="picture"><img src="data:image/png;base64,{data}" alt="{caption}">'
+            '<figure class="picture"><div class="scroll" tabindex="0" role="region" '
+            f'aria-label="{picture.stem.replace("_", " ")}">'
+            f'<img src="data:image/png;base64,{data}" alt="{caption}" style="min-width: 34rem"></div>'
             f"<figcaption>{caption}</figcaption></figure>"
         )
     return Section("figures", "Figures", body)
@@ -98,7 +112,8 @@ def _runs(result: FitResult, directory: Path) -> Section:
         ),
         key=lambda row: (row[0], row[1]),
     )
-    head = [*(["law"] if several else []), "values", "model", "χ²", "pages of its tests"]
+    values = ", ".join(result.names.label(path) for path in result.parameters)
+    head = [*(["law"] if several else []), "values" if several else values, "model", "misfit χ²", "pages"]
     body = ""
     for chi2, law, solution, point in rows:
         cells = [_values(point), _model(solution, point), "–" if math.isinf(chi2) else f"{chi2:.4g}"]

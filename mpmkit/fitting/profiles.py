@@ -14,10 +14,14 @@ from .surrogate import Surrogate
 PLACES = 41
 """Places along a coordinate at which a profile is computed; as many more are near the best value."""
 SMALL = 1e-4
-"""Step of a coordinate for finite differences of the polynomial."""
+"""Step of a coordinate for finite differences of the surface."""
 ITERATIONS = 60
 CLOSE = 1e-7
-"""A search on the polynomial ends when the coordinates change by less."""
+"""A search on the surface ends when the coordinates change by less."""
+SEED, TRIED = 5, 400
+"""Points of the box at which the shapes of the residuals are collected."""
+NEGLIGIBLE = 1e-9
+"""Relative size below which a shape is left out."""
 UNIFORM = 12.0
 """1/variance of a coordinate that is uniformly distributed from 0 to 1."""
 DOUBTFUL = 0.05
@@ -46,8 +50,8 @@ class Interval:
 class Likelihood:
     """χ² on the surrogate at many points of the box at once.
 
-    The surrogate is linear in its coefficients, so that the residuals are t(u) A − b with the terms t of the
-    polynomial. A QR decomposition reduces their number to the number of terms plus one, with the same χ².
+    A curve with hundreds of rows has far fewer independent shapes. The residuals r are projected to the
+    shapes that points of the box have, which leaves the same χ² of fewer numbers.
 
     Args:
         surrogate: of the finest model.
@@ -57,14 +61,15 @@ class Likelihood:
 
     def __init__(self, surrogate: Surrogate, misfit: Misfit, coordinates: Coordinates) -> None:
         self.surrogate, self.misfit, self.coordinates = surrogate, misfit, coordinates
-        rows = np.vstack([surrogate.coefficients, -misfit.value[None]])
-        _, triangle = np.linalg.qr(misfit.whitened(rows.T))
-        self._short = triangle.T
+        tried = np.random.default_rng(SEED).random((TRIED, len(coordinates)))
+        off = misfit.whitened((surrogate(tried) - misfit.value).T)
+        axes, size, _ = np.linalg.svd(off, full_matrices=False)
+        axes = axes[:, size > NEGLIGIBLE * size[0]]
+        self._short = misfit.whitened(np.eye(len(misfit))).T @ axes
 
     def residuals(self, u: np.ndarray) -> np.ndarray:
         """Residuals whose squares add up to χ², ``(…, q)``, at points ``(…, n)``; priors come last."""
-        terms = self.surrogate.terms(u)
-        own = np.concatenate([terms, np.ones((*terms.shape[:-1], 1))], axis=-1) @ self._short
+        own = (self.surrogate(u) - self.misfit.value) @ self._short
         return np.concatenate([own, self.coordinates.prior_residuals(u)], axis=-1)
 
     def chi2(self, u: np.ndarray) -> np.ndarray:
@@ -112,8 +117,32 @@ class Likelihood:
             damping = np.where(better, damping / 5, np.minimum(damping * 5, 1e8))
         return u
 
-    def interval(self, index: int, best: np.ndarray, crit: float) -> Interval:
-        """Where the profile of a coordinate lies less than ``crit`` above its least value."""
+    def intervals(self, best: np.ndarray, crit: float) -> list[Interval]:
+        """Where the profile of each coordinate lies less than ``crit`` above its least value.
+
+        An end of another coordinate's interval also fits. If it lies beyond a small bump of the profile, the
+        interval goes on to there.
+        """
+        found = [self.interval(index, best, crit) for index in range(len(best))]
+        ends = np.array([end for one in found for end in (one.low_at, one.high_at)])
+        least, most = ends.min(axis=0), ends.max(axis=0)
+        for index, one in enumerate(found):
+            if least[index] < one.low - CLOSE or most[index] > one.high + CLOSE:
+                found[index] = self.interval(index, best, crit, (least[index], most[index]))
+        return found
+
+    def interval(
+        self, index: int, best: np.ndarray, crit: float, inside: tuple[float, float] | None = None
+    ) -> Interval:
+        """Where the profile of one coordinate lies less than ``crit`` above its least value.
+
+        Args:
+            index: of the coordinate.
+            best: the point of least χ².
+            crit: Δχ² at the ends.
+            inside: a range of the coordinate that is known to fit.
+        """
+        first, last = inside or (best[index], best[index])
         width = float(np.sqrt(self.covariance(best)[index, index]))
         near = best[index] + width * np.linspace(-4, 4, PLACES)
         place = np.unique(np.clip(np.concatenate([np.linspace(0, 1, PLACES), near, [best[index]]]), 0, 1))
@@ -128,20 +157,20 @@ class Likelihood:
         points = np.where(lower, *tried)
         points[middle] = best
         excess = self.chi2(points) - self.chi2(best)
-        low, low_at, low_open = _end(place, points, excess - crit, middle, -1)
-        high, high_at, high_open = _end(place, points, excess - crit, middle, +1)
+        low, low_at, low_open = _end(place, points, excess - crit, middle, -1, first)
+        high, high_at, high_open = _end(place, points, excess - crit, middle, +1, last)
         return Interval(float(best[index]), low, high, low_at, high_at, low_open, high_open, place, excess)
 
 
 def _end(
-    place: np.ndarray, points: np.ndarray, above: np.ndarray, middle: int, way: int
+    place: np.ndarray, points: np.ndarray, above: np.ndarray, middle: int, way: int, inside: float
 ) -> tuple[float, np.ndarray, bool]:
-    """Where the excess first rises above the limit on one side, the point there, and whether it never
-    does."""
+    """Where the excess first rises above the limit on one side beyond a place that is known to fit, the point
+    there, and whether it never does."""
     number = middle
     while 0 <= number + way < len(place):
-        if above[number + way] > 0:
-            part = above[number] / (above[number] - above[number + way])
+        if above[number + way] > 0 and way * (place[number + way] - inside) > 0:
+            part = above[number] / (above[number] - above[number + way]) if above[number] <= 0 else 0.0
             at = points[number] + part * (points[number + way] - points[number])
             return float(place[number] + part * (place[number + way] - place[number])), at, False
         number += way

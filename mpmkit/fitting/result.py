@@ -80,8 +80,22 @@ class FitResult:
     @cached_property
     def sentences(self) -> list[str]:
         """Remarks on the result, in plain words."""
-        said = [*self.solution.said, *unknowable.sentences(self.solution, self.names)]
-        said.append(further.sentence(self.further, self.names))
+        return [*self.unknown, self.advice, *self.remarks]
+
+    @cached_property
+    def unknown(self) -> list[str]:
+        """What cannot be known from these measurements."""
+        return unknowable.sentences(self.solution, self.names)
+
+    @cached_property
+    def advice(self) -> str:
+        """Which further measurement would help most."""
+        return further.sentence(self.further, self.names)
+
+    @cached_property
+    def remarks(self) -> list[str]:
+        """How the result was found, and how far to trust it."""
+        said = [*self.solution.said, *unknowable.remarks(self.solution)]
         for test, error in zip(self.solution.runs.tests, self.solution.errors, strict=True):
             if error is None:
                 said.append(
@@ -140,7 +154,8 @@ class FitResult:
 
 def names_of(solution: Solution) -> Names:
     """Names and units of the parameters of a solution."""
-    return Names(solution.coordinates.paths, solution.runs.tests[0].stages[-1].case)
+    stage = solution.runs.tests[0].stages[-1]
+    return Names(solution.coordinates.paths, stage.case, stage.units)
 
 
 def found_in(solution: Solution, level: float) -> dict[str, Found]:

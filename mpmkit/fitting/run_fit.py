@@ -17,7 +17,7 @@ from .measurements import measured_in
 from .model import Alternative, Fit
 from .plausible import check
 from .runs import Purse, Runs, Spent, Test
-from .stages import check_path, stages_of
+from .stages import base_of, case_of, check_path, stages_of
 
 
 def fit(
@@ -33,22 +33,22 @@ def fit(
     """Find the parameters of cases from measurements.
 
     The fit minimises χ² = (y − d)ᵀ C⁻¹ (y − d), first with coarse models and then with finer ones. Parallel
-    runs give the derivatives. The intervals come from the profile likelihood on a polynomial through the runs
+    runs give the derivatives. The intervals come from the profile likelihood on a surface through the runs
     of the finest model (docs/fit.md).
 
     Args:
         fit: a fit file, its content, or a ``Fit``.
         out: directory for results and runs; a fit continues from the runs there. Default: nothing is written.
-        overwrite: whether the result of another fit in ``out`` may be replaced; its runs are kept in any
-        case. threads: of each run; default: as the fit says.
+        overwrite: whether the result of another fit in ``out`` may be replaced; its runs are always kept.
+        threads: of each run; default: as the fit says.
         workers: runs at once on this machine; default: as many as its cores hold of ``threads``.
         executor: of ``concurrent.futures``, runs them instead of processes of this machine.
         listen: called with each run that has ended, and its result.
 
     Returns:
         A ``FitResult``: ``parameters`` by path with ``value``, ``low``, ``high``, ``level`` and
-        ``identifiable``,
-        ``correlation``, ``sentences``, ``further``, ``evidence`` (laws compared) and ``dataset`` (all runs).
+        ``identifiable``, ``correlation``, ``sentences``, ``further``, ``evidence`` (laws compared) and
+        ``dataset`` (all runs).
 
     Raises:
         CaseError: bad input, a measurement that no run can give, or SciPy is not installed.
@@ -91,13 +91,15 @@ def prepared(fit: Fit) -> dict[str, tuple[Alternative, list[Test]]]:
     for name, alternative in {"": own, **fit.laws}.items():
         tests = []
         for test, entry in fit.tests.items():
-            measured = measured_in(test, entry)
-            stages = stages_of(test, entry, alternative.changes, measured)
+            base = base_of(test, entry)
+            measured = measured_in(test, entry, case_of(test, entry, base, alternative.changes))
+            stages = stages_of(test, entry, base, alternative.changes, measured)
             check(test, stages[-1].case, measured)
             tests.append(Test(test, stages, measured))
         for path, parameter in alternative.parameters.items():
             for one in tests:
-                check_path(one.stages[-1], path)
+                for stage in one.stages:
+                    check_path(stage, path, fit.tests[one.name].changes | alternative.changes)
                 for end in ("low", "high"):
                     _require_valid(one, path, end, getattr(parameter, end))
         if not name:

@@ -18,11 +18,13 @@ from ..study.execute import Listener
 from ..study.members import Member
 from ..study.store import Store
 from ..study.work import FAILED
-from .measurements import Measured, Predicted, predicted
+from .measurements import Bounds, Measured, Predicted, bounds_of_stopped, predicted
 from .model import Budget
 from .stages import Stage
 
 FINISHED = "finished"
+LEFT = "particle-outside"
+"""The guard that stops a run whose material reaches the end of its domain: up to then the run is valid."""
 
 
 class Spent(Exception):
@@ -53,6 +55,8 @@ class Point:
     members: list[Member]
     predicted: Predicted | None
     """None where a guard stopped a run"""
+    bounds: Bounds | None
+    """what the runs say if a guard stopped one; None if nothing"""
     sentence: str
     """message of a run that a guard stopped"""
 
@@ -170,22 +174,31 @@ class Runs:
         return self._store.outcome(member) or {}
 
     def _point(self, stage: int, values: dict[str, float], members: list[Member]) -> Point:
-        parts = []
+        parts, bounds, stopped = [], [], ""
         for test, member in zip(self.tests, members, strict=True):
             record = self.record(member)
             if record.get("fate", FAILED) == FAILED:
                 raise MpmkitError(
                     f"test '{test.name}' with {said(values)}: the run failed: {record.get('sentence', '')}"
                 )
-            if record["fate"] != FINISHED:
-                return Point(stage, values, members, None, f"{record['fate']}: {record['sentence']}")
             history = self.history(member)
-            assert history is not None
-            parts.append(predicted(test.measured, record["summary"], history))
-        both = Predicted(
+            if record["fate"] == FINISHED:
+                assert history is not None
+                end = test.stage(stage, self.stages).case.end
+                parts.append(predicted(test.measured, record["summary"], history, end))
+                bounds.append(Bounds(parts[-1].value, parts[-1].value))
+                continue
+            stopped = stopped or f"{record['fate']}: {record['sentence']}"
+            if record["fate"] != LEFT or history is None or history.sizes["time"] < 2:
+                return Point(stage, values, members, None, None, stopped)
+            bounds.append(bounds_of_stopped(test.measured, record["summary"], history))
+        both = Bounds(np.concatenate([b.low for b in bounds]), np.concatenate([b.high for b in bounds]))
+        if stopped:
+            return Point(stage, values, members, None, both, stopped)
+        result = Predicted(
             np.concatenate([part.value for part in parts]), np.concatenate([part.scale for part in parts])
         )
-        return Point(stage, values, members, both, "")
+        return Point(stage, values, members, result, both, "")
 
 
 def said(values: dict[str, float]) -> str:

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .coordinates import Coordinates
+from .measurements import Bounds
 from .misfit import Misfit
 from .profiles import Interval, Likelihood, critical, widening
 from .runs import Point, Runs, Spent
 from .surrogate import Surrogate
 
-ROUNDS = 4
+ROUNDS = 7
 """How often runs are added at the ends of the intervals, at most."""
 AGREES = 0.5
 """Allowed error of the surrogate at the ends of an interval, relative to the critical Δχ²."""
 WIDE = 0.12
 """If the standard deviation of a coordinate is larger, runs cover it from bound to bound."""
+CLOSE = 0.05
+"""A run is as good as one at another place if it is closer, relative to the width of the intervals."""
 FAR = 1.5
 """Distance of the first runs from the best point, in standard deviations."""
 
@@ -78,19 +81,25 @@ class Surveyor:
         for _ in range(0 if spent else ROUNDS):
             ends = [end for interval in found.intervals for end in (interval.low_at, interval.high_at)]
             try:
-                points = self._run([found.best, *ends])
+                points = self._run([self._nearest(found, found.best), *ends])
             except Spent:
                 return self._found(found.best, agrees=False, spent=True)
-            agrees = all(self._agrees(found, point) for point in points)
-            found = self._found(found.best, agrees, spent=False)
-            if agrees:
-                break
+            if all(self._agrees(found, point) for point in points):
+                return replace(found, agrees=True)  # this surrogate is the one that the runs have confirmed
+            found = self._found(found.best, agrees=False, spent=False)
         return found
 
     def _run(self, places: list[np.ndarray]) -> list[Point]:
         return self._runs.at(
             self._stage, [self._coordinates.values(np.clip(place, 0, 1)) for place in places]
         )
+
+    def _nearest(self, found: Survey, place: np.ndarray) -> np.ndarray:
+        """The place of a finished run that is as good as at this place; the place itself if there is none."""
+        width = np.array([interval.high - interval.low for interval in found.intervals])
+        known = [self._u(p) for p in self._runs.points if p.stage == self._stage and p.predicted is not None]
+        near = min(known, key=lambda u: float(np.max(np.abs(u - place) / width)))
+        return near if np.all(np.abs(near - place) <= CLOSE * width) else place
 
     def _u(self, point: Point) -> np.ndarray:
         return np.array(
@@ -114,18 +123,23 @@ class Surveyor:
 
     def _likelihood(self) -> Likelihood:
         """The surrogate through all runs of the finest model, weighted by how well each fits."""
-        known = [p for p in self._runs.points if p.stage == self._stage and p.predicted is not None]
-        u = np.array([self._u(point) for point in known])
-        if len(np.unique(u, axis=0)) <= len(self._coordinates):
+        known = [
+            (point, point.bounds)
+            for point in self._runs.points
+            if point.stage == self._stage and point.bounds is not None
+        ]
+        u = np.array([self._u(point) for point, _ in known])
+        complete = np.array([point.predicted is not None for point, _ in known])
+        if len(np.unique(u[complete], axis=0)) <= len(self._coordinates):
             raise Spent
-        y = np.array([point.predicted.value for point in known if point.predicted is not None])
-        plain = self._misfit(np.zeros(y.shape[1]))
-        chi2 = np.array([np.sum(plain.residuals(row) ** 2) for row in y])
-        scale = plain.total
+        low, high = (np.array([getattr(bounds, end) for _, bounds in known]) for end in ("low", "high"))
+        plain = self._misfit(np.zeros(low.shape[1]))
+        chi2 = np.array([_least(plain, bounds) for _, bounds in known])
+        least = chi2[complete].min()
         weight = 1 / (
-            1 + (chi2 - chi2.min()) / (4 * critical(self._level) * _per_row(chi2.min(), len(plain)))
+            1 + np.maximum(chi2 - least, 0) / (4 * critical(self._level) * _per_row(least, len(plain)))
         )
-        surrogate = Surrogate(u, y, weight, scale)
+        surrogate = Surrogate(u, low, high, weight, plain.total)
         return Likelihood(surrogate, self._misfit(surrogate.error), self._coordinates)
 
     def _found(self, near: np.ndarray, agrees: bool, spent: bool) -> Survey:
@@ -137,7 +151,7 @@ class Surveyor:
             float(np.sum(likelihood.misfit.residuals(likelihood.surrogate(best)) ** 2)), freedom
         )
         crit = critical(self._level) * widened
-        intervals = [likelihood.interval(index, best, crit) for index in range(len(best))]
+        intervals = likelihood.intervals(best, crit)
         bounded = [not (interval.low_open or interval.high_open) for interval in intervals]
         if self._coordinates.have_priors:
             free = Likelihood(likelihood.surrogate, likelihood.misfit, self._coordinates.without_priors())
@@ -147,12 +161,21 @@ class Surveyor:
 
     def _agrees(self, found: Survey, point: Point) -> bool:
         """Whether a run has the χ² that the surrogate has there."""
-        if point.predicted is None:
-            return True  # a guard stopped it; there is no result to compare
+        if point.bounds is None:
+            return True  # nothing is known there
         u = self._u(point)
-        run = float(np.sum(found.likelihood.misfit.residuals(point.predicted.value) ** 2))
+        run = _least(found.likelihood.misfit, point.bounds)
         run += float(np.sum(self._coordinates.prior_residuals(u) ** 2))
-        return abs(run - float(found.likelihood.chi2(u))) <= AGREES * critical(self._level) * found.widened
+        off = run - float(found.likelihood.chi2(u))
+        if point.predicted is None:
+            off = max(off, 0.0)  # the χ² of a run that ended early is at least this
+        return abs(off) <= AGREES * critical(self._level) * found.widened
+
+
+def _least(misfit: Misfit, bounds: Bounds) -> float:
+    """χ² of a run; of one that ended early, with the values within its bounds nearest to the measured."""
+    nearest = np.clip(misfit.value, bounds.low, bounds.high)
+    return float(np.sum(misfit.residuals(nearest) ** 2))
 
 
 def _per_row(chi2: float, rows: int) -> float:

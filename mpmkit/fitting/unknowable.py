@@ -24,14 +24,12 @@ def correlation(solution: Solution) -> np.ndarray:
 
 
 def sentences(solution: Solution, names: Names) -> list[str]:
-    """Sentences about parameters that are not determined, and about measurements that the model misses."""
+    """Sentences about parameters that are not determined, and that cannot be distinguished."""
     said = []
     for index, interval in enumerate(solution.survey.intervals):
         if not solution.survey.bounded[index]:
             said.append(_open(solution, names, index, interval))
-    said += _bound_together(solution, names)
-    said += _missed(solution)
-    return said
+    return said + _bound_together(solution, names)
 
 
 def _open(solution: Solution, names: Names, index: int, interval: Interval) -> str:
@@ -91,7 +89,8 @@ def _bound_together(solution: Solution, names: Names) -> list[str]:
     return said
 
 
-def _missed(solution: Solution) -> list[str]:
+def remarks(solution: Solution) -> list[str]:
+    """Sentences about measurements that the model misses, and about intervals that are approximate."""
     said = []
     survey = solution.survey
     if survey.widened > 1:
@@ -113,7 +112,7 @@ def _missed(solution: Solution) -> list[str]:
                 )
     if not survey.agrees:
         said.append(
-            "At the ends of the intervals, the runs differ from the polynomial through them: "
+            "At the ends of the intervals, the runs differ from the surface through them: "
             "the intervals are approximate."
         )
     return said

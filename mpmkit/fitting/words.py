@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..case.model import Case
 from ..study.labels import short_names, unit_of
 
@@ -12,11 +14,12 @@ class Names:
     Args:
         paths: of the parameters.
         case: in which they stand.
+        units: of the parameters at the top of the case.
     """
 
-    def __init__(self, paths: list[str], case: Case) -> None:
+    def __init__(self, paths: list[str], case: Case, units: Mapping[str, str] | None = None) -> None:
         self._short = short_names(paths)
-        self._units = {path: unit_of(case, path) for path in paths}
+        self._units = {path: (units or {}).get(path) or unit_of(case, path) for path in paths}
 
     def name(self, path: str) -> str:
         """``plastic viscosity``."""

@@ -1,56 +1,65 @@
-"""Bodies: their shapes, the particles that fill them, and walls: their distances and motions."""
+"""Bodies: the solids that they are made of, the particles that fill them; walls: distances and motions."""
 
-from typing import Annotated, get_args
-
-from pydantic import Field
-
-from .base import Shape
-from .box import Box
+from ..contracts.solid import HalfSpace, Inverted, Jointed, Shell, Solid
+from .closed_mesh import (
+    copy_of_file,
+    inside_surface,
+    problem_of_file,
+    surface_in_file,
+    volume_in_surface,
+)
 from .contour import contour
-from .cylinder import Cylinder
-from .distance import HalfSpace, Inverted, Solid
-from .frustum import Frustum
-from .mesh import Mesh
+from .distance import (
+    Ball,
+    Brick,
+    BrickShell,
+    Extruded,
+    Revolved,
+    Section,
+    SurfaceMesh,
+    trapezium,
+    trapezium_plates,
+    trapezium_shell,
+)
 from .motion import AnyMotion, Motion, Rotation
 from .moving import MovingSolid
 from .overlap import shared_volume
-from .polygon import Polygon
+from .revolved import part_of_revolved
 from .sampling import Sample, expected_count, sample
-from .sphere import Sphere
 from .turning import axis_problem, generator, rotation
 
-AnyShape = Annotated[Frustum | Cylinder | Box | Sphere | Polygon | Mesh, Field(discriminator="kind")]
-"""Any shape in a case file; its ``kind`` selects the class."""
-
-FILES = {
-    get_args(shape.model_fields["kind"].annotation)[0]: shape.files
-    for shape in (Frustum, Cylinder, Box, Sphere, Polygon, Mesh)
-}
-"""Fields that name a file, by kind of shape."""
-
 __all__ = [
-    "FILES",
     "AnyMotion",
-    "AnyShape",
-    "Box",
-    "Cylinder",
-    "Frustum",
+    "Ball",
+    "Brick",
+    "BrickShell",
+    "Extruded",
     "HalfSpace",
     "Inverted",
-    "Mesh",
+    "Jointed",
     "Motion",
     "MovingSolid",
-    "Polygon",
+    "Revolved",
     "Rotation",
     "Sample",
-    "Shape",
+    "Section",
+    "Shell",
     "Solid",
-    "Sphere",
+    "SurfaceMesh",
     "axis_problem",
     "contour",
+    "copy_of_file",
     "expected_count",
     "generator",
+    "inside_surface",
+    "part_of_revolved",
+    "problem_of_file",
     "rotation",
     "sample",
     "shared_volume",
+    "surface_in_file",
+    "trapezium",
+    "trapezium_plates",
+    "trapezium_shell",
+    "volume_in_surface",
 ]

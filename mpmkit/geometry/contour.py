@@ -7,7 +7,7 @@ from itertools import permutations
 
 import numpy as np
 
-from .distance.solid import Found
+from ..contracts.solid import Found
 
 COARSE = 8
 """Cells along the longest side of the box at the start of the search for the surface."""

@@ -8,7 +8,7 @@ _POINTS = 1 << 15
 """Points on the surface that are checked; undetected parts are below a ten-thousandth of the area."""
 
 _OFF = 1e-5
-"""How far from the surface, in parts of its extent: farther than the single precision of winding numbers."""
+"""Distance from the surface, as a part of its extent: above the error of winding numbers in float32."""
 
 
 def crossing(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray | None:

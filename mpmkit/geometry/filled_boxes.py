@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contracts.body_shape import BodyShape
 from ..spaces import Space
-from .base import Shape
 from .lattice import Rows
 
 POINTS = {2: 8, 3: 4}
@@ -23,7 +23,7 @@ Boxes = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 they are unchanged boxes of the lattice, (n,)."""
 
 
-def filled_boxes(shape: Shape, space: Space, axes: list[Rows], inside: np.ndarray) -> Boxes:
+def filled_boxes(shape: BodyShape, space: Space, axes: list[Rows], inside: np.ndarray) -> Boxes:
     """The boxes whose centres are inside a shape, with lengths adjusted to the body.
 
     A box that the surface cuts is shortened along the axis closest to the surface normal, on the side of the
@@ -147,7 +147,7 @@ def _any_around(block: np.ndarray) -> np.ndarray:
 
 
 def _parts(
-    shape: Shape, space: Space, axes: list[Rows], counts: tuple[int, ...], index: np.ndarray
+    shape: BodyShape, space: Space, axes: list[Rows], counts: tuple[int, ...], index: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Part of each box in the body, (n,), and the position of its middle, in sides of the box, (n, dim)."""
     per_axis = POINTS[space.dim]

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .distance import Solid
+from ..contracts.solid import Solid
 from .motion import Hull, Motion
 
 

@@ -7,9 +7,8 @@ from itertools import product
 
 import numpy as np
 
+from ..contracts.body_shape import BodyShape
 from ..spaces import Space
-from .base import Shape
-from .box import Box
 
 NEGLIGIBLE = 1e-5
 """Allowed overlap relative to the larger extent; it exceeds rounding of meshes in single precision."""
@@ -19,8 +18,8 @@ _POINTS = 1 << 17
 
 
 def shared_volume(
-    first: Shape,
-    second: Shape,
+    first: BodyShape,
+    second: BodyShape,
     space: Space,
     spacing: Sequence[float] | np.ndarray,
     within: tuple[np.ndarray, np.ndarray],
@@ -43,8 +42,8 @@ def shared_volume(
     upper = np.min([within[1], bounds[0][1], bounds[1][1]], axis=0)
     if (upper - lower <= margin).any():
         return 0.0
-    if isinstance(first, Box) and isinstance(second, Box):
-        return first.volume_between(lower, upper, space)
+    if _fills(first, bounds[0], space) and _fills(second, bounds[1], space):
+        return first.part(lower, upper, space)
     points, size = _points(lower, upper, np.asarray(spacing, dtype=float) / 4)
     for shape in (first, second):
         points = points[shape.contains(points, space)]
@@ -53,6 +52,13 @@ def shared_volume(
     for shape, step in product((first, second), steps):
         points = points[shape.contains(points + step, space)]
     return float(space.particle_volume(points, size).sum())
+
+
+def _fills(shape: BodyShape, bounds: tuple[np.ndarray, np.ndarray], space: Space) -> bool:
+    """Whether a shape fills the box around it."""
+    lower, upper = bounds
+    whole = float(space.particle_volume((lower + upper)[None] / 2, upper - lower)[0])
+    return abs(shape.volume(space) - whole) <= 1e-12 * whole
 
 
 def _points(lower: np.ndarray, upper: np.ndarray, spacing: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

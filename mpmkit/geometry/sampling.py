@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..contracts.body_shape import BodyShape
+from ..errors import CaseError
+from ..registry.audit.body_shapes import size_of, volume_of
 from ..spaces import Space
-from .base import Shape
 from .filled_boxes import filled_boxes
 from .lattice import Rows, rows
 
@@ -43,7 +45,7 @@ class Sample:
 
 
 def sample(
-    shape: Shape,
+    shape: BodyShape,
     space: Space,
     *,
     origin: Sequence[float] | np.ndarray,
@@ -78,6 +80,7 @@ def sample(
     Raises:
         CaseError: the space cannot hold the shape.
     """
+    require_room(shape, space)
     origin = np.asarray(origin, dtype=float)
     spacing = cell_size / np.asarray(per_axis, dtype=float)
     lower, upper = shape.bounds(space)
@@ -97,7 +100,7 @@ def sample(
         return _none(space)
     centre, side, kept, whole = filled_boxes(shape, space, axes, inside)
     volume = space.particle_volume(centre, side)
-    total, part = shape.volume(space), shape.volume_between(low, high, space)
+    total, part = volume_of(shape, space), shape.part(low, high, space)
     raw, raw_kept = float(volume.sum()), float(volume[kept].sum())
     if raw_kept and abs(part / total - raw_kept / raw) <= _SAME_SHARE:
         _scale_to(total, volume, whole, np.ones(len(kept), dtype=bool))
@@ -105,6 +108,12 @@ def sample(
         _scale_to(part, volume, whole, kept)
     half_size = np.minimum(side / 2, cell_size / 2)
     return Sample(centre[kept], volume[kept], half_size[kept])
+
+
+def require_room(shape: BodyShape, space: Space) -> None:
+    """Raise CaseError with one sentence if a space cannot hold a shape."""
+    if problem := shape.problem(space):
+        raise CaseError(problem)
 
 
 def _scale_to(total: float, volume: np.ndarray, whole: np.ndarray, which: np.ndarray) -> None:
@@ -135,7 +144,7 @@ def _cut(lower: np.ndarray, upper: np.ndarray, keep: Corners, near: float) -> tu
 
 
 def expected_count(
-    shape: Shape,
+    shape: BodyShape,
     space: Space,
     cell_size: float,
     per_axis: Sequence[int],
@@ -157,7 +166,8 @@ def expected_count(
     Raises:
         CaseError: the space cannot hold the shape.
     """
-    count = shape.size(space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
+    require_room(shape, space)
+    count = size_of(shape, space) / float(np.prod(cell_size / np.asarray(per_axis, dtype=float)))
     if keep is not None:
         lower, upper = shape.bounds(space)
         left = np.minimum(upper, keep[1]) - np.maximum(lower, keep[0])

@@ -1,4 +1,4 @@
-"""Compiled loops over particles and nodes. Each file holds one mapping; none of them knows a scheme."""
+"""Compiled loops over particles and nodes. Each file holds one kind of loop; none depends on a scheme."""
 
 from .environment import require_sound_environment
 

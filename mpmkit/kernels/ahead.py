@@ -1,11 +1,12 @@
-"""Compiling ahead: other processes compile what a run will need, while it is still on its way there.
+"""Ahead-of-time compilation: other processes compile the functions that a run will need soon.
 
-numba compiles one function at a time in a process. So the first function that is not in the kept code starts
-``compile_ahead`` in processes of its own, with a list of what the run needs. They put what they compile into
-the kept code, and the run loads it. If such a process ends early, nothing is lost but time.
+numba compiles one function at a time in a process. So this process starts some ``compile_ahead`` processes as
+soon as a function is missing from the cache of compiled code, and gives them a list of what the run needs.
+They write what they compile into the cache, and the run loads it from there. If such a process ends early,
+the run compiles the rest itself; only time is lost.
 
-Each process *claims* a function before it compiles it: it makes a file with the name of the code in a folder
-that all of them know. A run that needs code that is claimed waits for it.
+Each process *claims* a function before it compiles it: it creates a file with the name of the code in a
+common folder. A run that needs code that another process has claimed waits for it.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from .needs import Need
 NEEDS = "needs.json"
 """File in the folder of the claims: what is needed, in the order in which it should be compiled."""
 PATIENCE = 0.01
-"""Seconds between two looks at a claim."""
+"""Seconds between two checks of a claim."""
 
 
 class Ahead:
@@ -40,14 +41,14 @@ class Ahead:
         self._own: set[Path] = set()
 
     def expect(self, needs: Sequence[Need], processes: int) -> None:
-        """What this process is about to need, in the order in which it should be compiled.
+        """Set what this process will need, in the order in which it should be compiled.
 
-        Nothing is started before a function is missing.
+        No process is started until a function is missing from the cache.
         """
         self._needs, self._count = list(needs) if processes else [], processes
 
     def compiles(self, code: Path) -> bool:
-        """Whether another process has compiled this code, after waiting for it; if not, this one must.
+        """Wait for another process to compile this code; False if this process must compile it.
 
         The first call starts the processes.
         """
@@ -58,7 +59,7 @@ class Ahead:
         folder = Path(self._folder.name)
         if claim(folder, code):
             self._own.add(code)
-            return code.exists()  # it may have come since the caller looked
+            return code.exists()  # it may have been written since the caller looked
         while claim_of(folder, code).exists() and any(process.poll() is None for process in self._processes):
             time.sleep(PATIENCE)
         return code.exists()
@@ -72,14 +73,14 @@ class Ahead:
         command = [sys.executable, "-P", "-m", f"{__package__}.compile_ahead", self._folder.name]
         for _ in range(self._count):
             with suppress(OSError):
-                # The pipe stays open: it closes when this process ends, and then the other one ends as well.
+                # The pipe closes when this process ends, however it ends; then the other process ends too.
                 process = subprocess.Popen(
                     command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
                 )
                 self._processes.append(process)
 
     def end(self) -> None:
-        """End the processes, whatever they are at."""
+        """End the processes, also in the middle of their work."""
         for process in self._processes:
             process.kill()
             process.wait()
@@ -107,4 +108,4 @@ def claim(folder: Path, code: Path) -> bool:
 
 
 AHEAD = Ahead()
-"""Those of this process."""
+"""The processes that compile ahead of this process."""

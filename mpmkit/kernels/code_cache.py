@@ -1,10 +1,11 @@
-"""Compiled code that outlives the process, so that only the first run compiles.
+"""The cache of compiled code on disk, so that only the first run compiles.
 
-numba's own cache looks at the file of a kernel alone. If a function that the kernel calls changes in another
-file, or a constant that it was compiled with, numba goes on using the old code. Here the name of a file of
-compiled code depends on all that went into it: the sources of the kernel's package and of ``mpmkit.kernels``,
-the constants of the kernel and the functions that it calls, from any package (``fingerprint``), and the types
-of its arguments. Where one of these has no key, each process compiles the kernel anew.
+numba's own cache checks only the file of a kernel. If a function in another file that the kernel calls
+changes, or a constant with which it was compiled, numba goes on using the old code. Here the name of a file
+of compiled code depends on everything that determines the code: the sources of the kernel's package and of
+``mpmkit.kernels``, the constants of the kernel and the functions that it calls, from any package
+(``fingerprint``), and the types of its arguments. If one of these has no key, each process compiles the
+kernel itself.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ KERNELS = Path(__file__).parent
 
 
 def cached_code(compiler: Callable[..., Callable], *arguments: Any, **options: Any) -> Callable:
-    """``compiler(*arguments, **options)`` as a decorator whose code outlives the process."""
+    """``compiler(*arguments, **options)`` as a decorator that keeps the compiled code on disk."""
 
     def decorate(python_function: Callable) -> Callable:
         compiled = compiler(*arguments, **options)(python_function)
-        if isinstance(compiled, Dispatcher):  # not so where compilation is switched off
+        if isinstance(compiled, Dispatcher):  # not if compilation is switched off
             compiled._cache = KeptCode(compiled)  # type: ignore[attr-defined]
             compiled.get_call_template = _by_type_alone(compiled)  # type: ignore[method-assign]
         return compiled
@@ -48,10 +49,10 @@ def cached_code(compiler: Callable[..., Callable], *arguments: Any, **options: A
 
 
 def _by_type_alone(function: Dispatcher) -> Callable:
-    """How other compiled code asks for a function: by the types of the arguments, not by their values.
+    """Let other compiled code find a function by the types of the arguments, not by their values.
 
-    numba takes a constant argument for a type of its own, and would compile the function, and all that it
-    calls, once for each value.
+    numba gives each constant argument a type of its own. Without this, it would compile the function, and all
+    that it calls, once for each value.
     """
     by_value = function.get_call_template
 
@@ -63,10 +64,10 @@ def _by_type_alone(function: Dispatcher) -> Callable:
 
 
 class KeptCode(NullCache):
-    """The kept code of one function; numba asks it before it compiles, and gives it what it compiled.
+    """The cached code of one function; numba asks it before it compiles, and gives it what it compiled.
 
-    The sources are read when the function is made, since they may change while a process runs. Constants are
-    looked at when it is compiled, as numba does: a module may set them after the function.
+    The sources are read when the function is defined, because they may change while a process runs. Constants
+    are read when it is compiled, as numba does: a module may set them after it defines the function.
     """
 
     def __init__(self, function: Dispatcher) -> None:
@@ -77,21 +78,21 @@ class KeptCode(NullCache):
 
     @property
     def cache_path(self) -> str | None:
-        """The folder; numba shows it in ``stats``."""
+        """The folder of the cache; numba shows it in ``stats``."""
         root = code_folders.cache_root()
         return None if root is None else str(root / self._package)
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
-        """Code for a signature, None if there is none."""
+        """Load the code for a signature; None if there is none."""
         target_context.refresh()
-        with suppress(Exception):  # a value without a key, or a file is damaged: compiling anew is right
+        with suppress(Exception):  # a value has no key, or a file is damaged: then it is compiled again
             path = self._path(sig, target_context.codegen())
             if path.exists() or AHEAD.compiles(path):
                 return CompileResult._rebuild(target_context, *pickle.loads(code_folders.read(path)))
         return None
 
     def save_overload(self, sig: Any, data: CompileResult) -> None:
-        """Keep code, if it can be: not what holds an address of this process."""
+        """Write code to the cache, unless it holds an address of this process."""
         if data.library.has_dynamic_globals or not all(part.can_cache for part in data.lifted):
             return
         with suppress(Exception):  # a full disk, or a value without a key
@@ -121,7 +122,7 @@ class KeptCode(NullCache):
 
 @cache
 def _package(module: str) -> str:
-    """Name and digest of the package that a module belongs to; of mpmkit itself, its kernels alone."""
+    """Name and digest of the package of a module; for mpmkit itself, the digest of its kernels only."""
     top = module.partition(".")[0]
     package = sys.modules.get(top)
     if top == "mpmkit":
@@ -136,13 +137,13 @@ def _package(module: str) -> str:
 
 
 def digest(sources: tuple[Path, ...], versions: tuple[str, ...] = ()) -> str:
-    """Of the names and contents of all Python files in these folders, or of these files.
+    """Digest of the names and contents of these Python files, or of all in these folders.
 
     It does not depend on where a folder is: another copy of the same sources finds the same code.
     """
     total = hashlib.sha256("\0".join(versions).encode())
     for source in sources:
         root, files = (source, sorted(source.rglob("*.py"))) if source.is_dir() else (source.parent, [source])
-        for file in filter(Path.is_file, files):  # an editor's lock is a link to nowhere
+        for file in filter(Path.is_file, files):  # the lock file of an editor may be a broken link
             total.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes())
     return total.hexdigest()[:16]

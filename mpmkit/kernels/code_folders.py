@@ -1,8 +1,8 @@
-"""Folders of compiled code, and what is removed from them: files of ours alone.
+"""Folders of compiled code, and the removal of old files, only those of mpmkit.
 
 All files are in one folder, ``mpmkit-compiled``, in the user's cache directory, or in ``NUMBA_CACHE_DIR`` if
 that is set. In it each package has one folder for each state of its sources, called a *generation*. Files
-are removed only from a folder that has our marker, and only those with our endings.
+are removed only from a folder that has our marker file, and only those with our file endings.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from platformdirs import user_cache_path
 FOLDER = "mpmkit-compiled"
 MARKER = "CACHEDIR.TAG"
 TAG = "Signature: 8a477f597d28d172789f06886806bc55\n# Compiled kernels of mpmkit: they may be deleted.\n"
-"""See https://bford.info/cachedir: programs that make backups leave such a folder out."""
+"""See https://bford.info/cachedir: backup programs skip such a folder."""
 CODE, PARTIAL = ".code", ".code.partial"
 KEPT = 4
-"""Generations of compiled code that are kept of a package: branches that are worked on in turn."""
+"""Generations of compiled code that are kept for a package: a developer may switch between branches."""
 VERSIONS = 32
-"""Files that are kept of a function in a generation: types of arguments, and values of constants."""
+"""Files that are kept for a function in a generation, one for each set of argument types and constants."""
 IN_USE = 86_400
-"""Seconds since its last use for which anything is kept all the same: a run may be using it."""
+"""Everything used in the last so many seconds is kept: a run may be using it."""
 
 
 @cache
 def cache_root() -> Path | None:
-    """The folder of all compiled code; None where nothing can be written."""
+    """The folder of all compiled code; None if no folder can be written."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(tempfile.gettempdir()) / "mpmkit"
     for place in [Path(given)] if given else [user_cache_path("mpmkit"), shared]:
@@ -42,22 +42,22 @@ def cache_root() -> Path | None:
             with tempfile.TemporaryFile(dir=root):
                 pass
             if place != shared or _is_mine(root):
-                return root.absolute()  # also when the working directory changes
+                return root.absolute()  # absolute: the working directory may change
         except OSError:
             continue
     return None
 
 
 def _is_mine(folder: Path) -> bool:
-    """Whether no one else made a folder of a place that all users share: its files are executed."""
+    """Whether this user owns a folder in a place that all users share: its files are executed."""
     return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
 
 
 def read(path: Path) -> bytes:
-    """The content of a file of compiled code, which counts as used from now.
+    """Read a file of compiled code, and set the time of its last use to now.
 
     Raises:
-        OSError: it is not there.
+        OSError: there is no such file.
     """
     content = path.read_bytes()
     with suppress(OSError):
@@ -67,7 +67,7 @@ def read(path: Path) -> bytes:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Add a file ``<function>.<key>.code`` to a generation, and forget what has not been used for long.
+    """Add a file ``<function>.<key>.code`` to a generation, and remove what has long not been used.
 
     Raises:
         OSError: it cannot be written.
@@ -89,7 +89,7 @@ def write(path: Path, content: bytes) -> None:
 
 
 def forget_generations(root: Path, package: str) -> None:
-    """Remove the compiled code of sources that are no more, but for the last few used."""
+    """Remove the compiled code of old sources, except the generations that were used last."""
     generations = [path for path in root.glob("*-*") if path.name.rpartition("-")[0] == package]
     for generation in _forgotten(filter(_is_ours, generations), KEPT):
         with suppress(OSError):
@@ -101,7 +101,7 @@ def forget_generations(root: Path, package: str) -> None:
 
 
 def forget_versions(generation: Path, function: str) -> None:
-    """Remove what was compiled of a function for types and constants that are used no more."""
+    """Remove the code of a function for argument types and constants that have long not been used."""
     if not _is_ours(generation):
         return
     versions = [path for path in generation.glob(f"*{CODE}") if path.name.partition(".")[0] == function]
@@ -118,7 +118,7 @@ def _is_ours(folder: Path) -> bool:
 
 
 def _forgotten(paths: Iterable[Path], kept: int) -> Iterator[Path]:
-    """All but the ``kept`` that were used last, and but those used within a day."""
+    """All paths except the ``kept`` that were used last and those that were used within a day."""
     used = []
     for path in paths:
         with suppress(OSError):  # another process may have removed it

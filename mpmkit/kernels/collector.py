@@ -1,7 +1,7 @@
-"""Python's collector of garbage, which rests while numba compiles.
+"""Python's garbage collector is off while numba compiles.
 
-Compiling makes millions of small objects that live until it ends. The collector goes through all of them
-again and again and finds nothing; this is a fifth of the time that it takes to compile.
+Compilation creates millions of small objects that live until it ends. The collector would go through all of
+them again and again and find nothing, which takes a fifth of the time of a compilation.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numba.core import event
 
 
 class _Rest(event.Listener):
-    """Switches the collector off while anything is compiled, and on again if it was on before."""
+    """Switches the collector off during a compilation, and on again if it was on before."""
 
     def __init__(self) -> None:
         self._depth = 0
@@ -32,5 +32,5 @@ class _Rest(event.Listener):
 
 
 def rest_while_compiling() -> None:
-    """To be called once; numba compiles one function at a time in a process, by a lock of its own."""
+    """Call this once. numba compiles one function at a time in a process; it has a lock for this."""
     event.register("numba:compile", _Rest())

@@ -1,7 +1,7 @@
 """How kernels are compiled, in one place.
 
-Loops run in parallel over *chunks* of fixed length instead of over particles, so that a particle meets the
-same instructions whatever the number of threads: results are equal to the bit.
+Loops run in parallel over *chunks* of fixed length instead of over particles. So the same instructions are
+applied to a particle for any number of threads, and the results are equal to the bit.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numba
 from .code_cache import cached_code
 from .collector import rest_while_compiling
 
-# A thread of GNU OpenMP that waits for another one spins for milliseconds before it sleeps; where the two
-# have come to share a core, that is what each loop then takes. This many turns are some tens of microseconds.
-# It is read when the first loop runs in parallel, and what the user has set stays.
+# A thread of GNU OpenMP that waits for another one spins for milliseconds before it sleeps. If both share a
+# core, each loop then takes milliseconds. This number of spins takes some tens of microseconds. OpenMP reads
+# it when the first loop runs in parallel. A value set by the user is kept.
 os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 
 rest_while_compiling()
@@ -25,7 +25,7 @@ rest_while_compiling()
 CHUNK = 256
 """Particles in a chunk: enough to hide the cost of scheduling, few enough to keep threads evenly busy."""
 
-# No fastmath: it breaks isfinite, and code just compiled could round otherwise than code that was kept.
+# No fastmath: it breaks isfinite, and new code could round differently from code in the cache.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 
 
@@ -42,13 +42,13 @@ def function() -> Callable[[Callable], Callable]:
 def inline() -> Callable[[Callable], Callable]:
     """Decorator of a small function that becomes part of the kernel that calls it.
 
-    LLVM puts it there: numba's own ``inline="always"`` copies the source into each caller, and finds the
-    types of each copy anew, which takes a fifth longer to compile.
+    LLVM inlines it. numba's own ``inline="always"`` would copy the source into each caller and infer the
+    types of each copy again, which takes a fifth longer to compile.
     """
     return cached_code(numba.njit, forceinline=True, **_OPTIONS)
 
 
 @function()
 def chunk_count(n: int) -> int:
-    """Chunks that n particles make."""
+    """Number of chunks of n particles."""
     return (n + CHUNK - 1) // CHUNK

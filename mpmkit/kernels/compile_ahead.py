@@ -1,6 +1,6 @@
 """A process that compiles ahead of a run: ``python -m mpmkit.kernels.compile_ahead FOLDER``; see ``ahead``.
 
-It ends when its standard input is closed, which the process that started it keeps open.
+It ends when its standard input closes. The process that started it keeps this open.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from .needs import Need
 
 
 def compile_all(needs: Iterable[Need], claims: Path) -> None:
-    """Compile what is needed into the kept code, but for what is there, or claimed by another process.
+    """Compile what is needed into the cache, except what is there or claimed by another process.
 
-    What cannot be compiled is left to the run, which then says why.
+    A function that cannot be compiled is skipped: the run will meet the same error and report it.
     """
     for need in needs:
         with suppress(Exception):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import prange
 
-from .compile import CHUNK, chunk_count, kernel
-from .elementary import SMALLEST, power
-from .tensors import shear_squared
+from .compile import CHUNK, chunk_count, inline, kernel
+from .elementary import cube_root
+from .tensors import squares_of_shear
 
 
 @kernel()
@@ -19,9 +18,9 @@ def follow_strain(L, dt, box, least, half_size):
     The half-sizes that the shape function sees are those of the box, or ``least``; they stay as they are
     where ``least`` has no rows.
 
-    What the box must do is fill the space between a particle's neighbours. Rows that slide over each other
-    keep their distance, and a body that turns as a whole keeps its boxes: simple shear and rotation leave
-    the box as it is, where the stretch U_ii grows with shear, and F_ii shrinks as the material turns.
+    The box must fill the space between a particle's neighbours. Rows that slide over each other keep their
+    distance, and a body that rotates as a whole keeps its boxes. So simple shear and rotation do not change
+    the box. The stretch U_ii, in contrast, grows with shear, and F_ii shrinks as the material rotates.
     """
     n, dim = box.shape
     follows = len(least) > 0
@@ -37,38 +36,48 @@ def follow_strain(L, dt, box, least, half_size):
 def hold_volume(L, volume, position, radial, box, half_size, follows, largest):
     """l = V^(1/dim) / 2 along every axis, with the area V / (2 π r) for the volume in an axisymmetric scene.
 
-    A box of equal sides knows no direction that shear could have scrambled. The half-sizes that the shape
-    function sees are those of the box if it ``follows``. ``largest``, an entry a chunk, becomes the largest
-    shear rate γ̇, 1/s, of its particles.
+    A box with equal sides has no direction, so that shear cannot distort it. The half-sizes that the shape
+    function sees are those of the box if it ``follows``. ``largest``, with an entry for each chunk, becomes
+    the largest shear rate γ̇, 1/s, of its particles.
     """
     n, dim = box.shape
+    gradients, boxes, half_sizes = L.reshape(-1), box.reshape(-1), half_size.reshape(-1)
     for c in prange(chunk_count(n)):
         begin, end = c * CHUNK, min(n, (c + 1) * CHUNK)
-        size = volume[begin:end].copy()
+        side = volume[begin:end].copy()
         if radial:
-            for k in range(len(size)):
-                size[k] /= 2 * math.pi * position[begin + k, 0]
-        half = np.empty(len(size))
+            for k in range(len(side)):
+                side[k] /= 2 * math.pi * position[begin + k, 0]
         if dim == 2:
-            for k in range(len(size)):
-                half[k] = 0.5 * math.sqrt(size[k])
+            for k in range(len(side)):
+                side[k] = 0.5 * math.sqrt(side[k])
         else:
-            for k in range(len(size)):
-                half[k] = 0.5 * power(max(size[k], SMALLEST), 1 / 3)
+            for k in range(len(side)):
+                side[k] = 0.5 * cube_root(side[k]) if side[k] > 0.0 else math.nan
+        _hold(boxes[dim * begin : dim * end], side, dim)
+        if follows:
+            _hold(half_sizes[dim * begin : dim * end], side, dim)
+        squares_of_shear(gradients[9 * begin : 9 * end], side)
         most = 0.0
-        for p in range(begin, end):
-            side = half[p - begin] if volume[p] > 0.0 else math.nan
-            for a in range(dim):
-                box[p, a] = side
-                if follows:
-                    half_size[p, a] = side
-            most = max(most, shear_squared(L, p))
+        for square in side:
+            most = max(most, square)
         largest[c] = math.sqrt(most)
+
+
+@inline()
+def _hold(sides, side, dim):
+    """All sides of a box are alike; of a volume of zero and less they are no number."""
+    if dim == 3:
+        for k in range(len(side)):
+            sides[3 * k] = sides[3 * k + 1] = sides[3 * k + 2] = side[k]
+    else:
+        for k in range(len(side)):
+            sides[2 * k] = sides[2 * k + 1] = side[k]
 
 
 @kernel()
 def volume_within_reach(volume, half_size, cell_size, within):
-    """V Π min(1, Δx/(2 l_i)), ``(n,)``: what of each box is where its weights are, no longer than a cell."""
+    """V Π min(1, Δx/(2 l_i)), ``(n,)``: volume of the part of each box that its weights see."""
     n, dim = half_size.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):

@@ -1,4 +1,4 @@
-"""What the environment says of threads, and whether this process can use any."""
+"""Checks of the environment variables for threads, and of whether this process can use threads."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ COUNT, LAYER = "NUMBA_NUM_THREADS", "NUMBA_THREADING_LAYER"
 
 
 def require_sound_environment() -> None:
-    """To be called before numba is loaded, which reads the environment and fails in words of its own.
+    """Check the environment before numba is loaded, which would fail with a message of its own.
 
     Raises:
-        CaseError: the environment asks for threads that there cannot be.
+        CaseError: the environment asks for threads that are impossible.
     """
     count = os.environ.get(COUNT)
     if count is not None and not (count.strip().isdecimal() and int(count) > 0):
@@ -36,26 +36,26 @@ def require_sound_environment() -> None:
 
 
 def require_threads() -> None:
-    """To be called before the first loop that may run in parallel.
+    """Check that this process can use threads; call this before the first loop that may run in parallel.
 
     Raises:
-        MpmkitError: this process was forked from one that had run such a loop.
+        MpmkitError: this process was forked from a process that had run such a loop.
     """
     if _threads_lost:
         raise MpmkitError(
             "mpmkit cannot run here: this process was forked from one that had used mpmkit's threads, which "
-            "do not survive a fork; start processes anew, with multiprocessing.get_context('spawn')"
+            "do not survive a fork; start new processes, with multiprocessing.get_context('spawn')"
         )
 
 
 def _after_fork() -> None:
-    """GNU's OpenMP ends a forked process that goes on to use it, and its parent would wait for ever."""
+    """GNU OpenMP ends a forked process that uses threads again, and its parent would wait for ever."""
     global _threads_lost
     import numba
 
     try:
         layer = numba.threading_layer()
-    except ValueError:  # no loop has run in parallel: the process can begin with its own threads
+    except ValueError:  # no loop has run in parallel yet: this process can start its own threads
         return
     _threads_lost = layer == "omp" and sys.platform.startswith("linux")
 

@@ -1,4 +1,4 @@
-"""How far the material reaches along an axis: no further than the domain, nor than the grid can tell."""
+"""How far the material reaches along an axis, within the domain and the resolution of the grid."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from .compile import CHUNK, chunk_count, kernel
 def extents(position, box, axes, extent, periodic, longest):
     """Lowest x - l and highest x + l along the first ``axes`` axes, ``(axes, 2)``, m, in the domain.
 
-    The half-size l of a box counts up to ``longest``, and what of it is beyond a face is cut off: see
-    ``solver.measures``. Particles outside the domain, or not finite, are left out; where none is left, the
-    ends are ±∞. Along a periodic axis a position may be anywhere, and nothing is cut off.
+    The half-size l of a box counts up to ``longest``, and the part of a box beyond a face is cut off: see
+    ``solver.measures``. Particles outside the domain, or not finite, are left out; if none is left, the ends
+    are ±∞. Along a periodic axis a position may have any value, and nothing is cut off.
 
     Args:
         position, box: ``(n, dim)``, m.
-        axes: number of axes that are looked at.
+        axes: number of axes, from the first.
         extent: ``(dim,)``, m, upper corner of the domain; the lower one is 0.
-        periodic: ``(dim,)``, whether an axis is.
-        longest: m, half-size of the longest box that counts as it is.
+        periodic: ``(dim,)``, whether an axis is periodic.
+        longest: m, largest half-size that counts.
     """
     n, dim = position.shape
     chunks = chunk_count(n)

@@ -1,22 +1,22 @@
-"""What the faces of the grid give to the material: impulses at their nodes, and by the ghosts behind them.
+"""Impulses that the faces of the grid give to the material, at their nodes and through their ghosts.
 
-The particles of a step change their momentum by Σ m Δv over all nodes, with the masses that they put there
-themselves, on ghosts too. Forces inside the material and the weight are Δt Σ f. The rest is what faces and
-walls give. Folding a ghost of mass m and force f, with the sign s of each component, onto its image, and
-filling it with s Δv of that image, adds
+In a step, the momentum of the particles changes by Σ m Δv over all nodes, ghosts included, with the masses
+that the particles have put there. Forces inside the material and the weight give Δt Σ f. Faces and walls give
+the rest. A ghost of mass m and force f is folded onto its image, with the sign s of each component, and then
+filled with s Δv of that image. Together this adds
 
     m Δv_ghost - Δt f   at the ghost,   and   Δt s f - m Δv_image   at its image,
 
-together (s - 1)(m Δv_image + Δt f). A node in the plane of a face that is held adds m times the change of
-its velocity. In mapping, v stands for Δv, and the momentum p for Δt f.
+in sum (s - 1)(m Δv_image + Δt f). A node in the plane of a face that is held adds m times the change of its
+velocity. During mapping, v takes the place of Δv, and the momentum p that of Δt f.
 
-Folds of several faces follow each other, and fills undo them in the opposite order. So in an edge each face
-counts what it does to what the ones before it have left, and the sum over all faces is exact.
+The faces are folded one after the other, and filled in the opposite order. So at an edge each face counts the
+change of what the faces before it have left, and the sum over all faces is exact.
 
 ``given`` (width,) are the sums of one face: impulse, N s, (dim,), its moment about the origin of the scene,
 N m s, (3,) or (1,), and its work, J, which is zero: faces stand still. ``place`` (n, dim) is that of the node
 of the face between ghost and image, m. ``held`` (n, NODE) is the record of each ghost as it was before the
-fold; its entry ``FATE`` says what became of it.
+fold; its entry ``FATE`` says what was done with it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .compile import function, inline
 from .scatter import CONTACT
 
 FATE = CONTACT
-"""Entry of a held record: FOLDED, LEFT where the face did not act, or 0 where there was nothing."""
+"""Entry of a held record: FOLDED, LEFT if the face did not act, or 0 if the ghost was empty."""
 FOLDED, LEFT = 1.0, -1.0
 
 
@@ -56,7 +56,7 @@ def add(given, dim, place, k, d, impulse):
 
 @function()
 def hold(nodes, mirrors, acting, first, last, held):
-    """Keep slots first..last-1 of ghosts that are about to be folded; with slot 0 a new record begins."""
+    """Keep slots first..last-1 of ghosts before they are folded; slot 0 starts a new record."""
     for k in range(len(mirrors)):
         ghost = mirrors[k, 0]
         if first == 0:
@@ -80,7 +80,7 @@ def _value(nodes, i, dim, d, solved, of_change):
 
 @inline()
 def _add_at_ghost(given, dim, axis, out, place, k, d, impulse):
-    """Add an impulse at the ghost that belongs to a place on the face, or with -out at its image."""
+    """Add an impulse at the ghost of a place on the face, or, with -out, at the image of that ghost."""
     add(given, dim, place, k, d, impulse)
     if d != axis:
         _turn(given, dim, axis, out, d, impulse)
@@ -88,10 +88,10 @@ def _add_at_ghost(given, dim, axis, out, place, k, d, impulse):
 
 @function()
 def count_overwritten(nodes, mirrors, acting, sign, axis, out, place, solved, of_change, given):
-    """Add what ghosts with a mass of their own get by a filling, after which walls of the case act.
+    """Add the impulses on ghosts that have mass when they are filled, before the walls of the case act.
 
-    This is mass on which a face did not act when others were folded, or that a wall has folded onto a ghost.
-    ``solved``: whether the momentum equation is. The other arguments are those of ``count``.
+    A ghost has mass if the face did not act on it when others were folded, or if a wall has folded mass onto
+    it. ``solved``: whether the momentum equation has been solved. The other arguments are those of ``count``.
     """
     dim = place.shape[1]
     for k in range(len(mirrors)):
@@ -106,16 +106,16 @@ def count_overwritten(nodes, mirrors, acting, sign, axis, out, place, solved, of
 
 @function()
 def count(nodes, mirrors, acting, sign, axis, out, place, held, dt, given, mapped):
-    """Add what the ghosts of a face give when they are filled for the last time in a step of ``dt`` s.
+    """Add the impulses of the ghosts of a face when they are filled for the last time in a step of ``dt`` s.
 
-    What they gave in mapping is counted now too: a face that begins to push only now changes that as well.
-    The velocity as mapped is v - Δv.
+    The impulses of the mapping are counted now too, because a face that begins to push in this step changes
+    them. The velocity as mapped is v - Δv.
 
     Args:
         acting: bit of ``CONTACT`` of the nodes at which the face acts; 0 for all.
-        sign: (NODE,) of every slot under reflection.
-        axis, out: the axis of the face, and where its ghosts are along it from the face, m.
-        given, mapped: sums of the face, by the momentum equation and in mapping.
+        sign: (NODE,) sign of every slot under reflection.
+        axis, out: the axis of the face, and the distance of its ghosts from it along this axis, with sign, m.
+        given, mapped: sums of the face, from the momentum equation and from the mapping.
     """
     dim = place.shape[1]
     for k in range(len(mirrors)):
@@ -134,14 +134,14 @@ def count(nodes, mirrors, acting, sign, axis, out, place, held, dt, given, mappe
             if sign[1 + d] < 0.0:
                 add(given, dim, place, k, d, -2.0 * (moved + force))
                 add(mapped, dim, place, k, d, -2.0 * (was_moved + momentum))
-            elif d != axis:  # what is even has no sum, but it has gone from the ghost to its image
+            elif d != axis:  # no net impulse, but it has moved from the ghost to its image
                 _turn(given, dim, axis, out, d, 2.0 * (moved - force))
                 _turn(mapped, dim, axis, out, d, 2.0 * (was_moved - momentum))
 
 
 @function()
 def _count_turned(nodes, mirrors, acting, sign, axis, out, place, held, k, factor, of_change, given):
-    """The same of one ghost where the face has let go since it was folded, or begins to act now."""
+    """The same for a ghost whose face has stopped acting since it was folded, or begins to act now."""
     dim = place.shape[1]
     ghost, image, wall = mirrors[k, 0], mirrors[k, 1], mirrors[k, 2]
     folded, m, first = held[k, FATE] == FOLDED, held[k, 0], 1 + dim if of_change else 1

@@ -1,8 +1,8 @@
-"""What is compiled into a function, as a key: equal keys mean the same machine code.
+"""A key of everything that is compiled into a function: equal keys mean the same machine code.
 
-numba takes the globals of a function, the values that it closes over and the functions that it calls as they
-are when it compiles. So the key is made of all of these, as they are then, through every function that is
-called, wherever it comes from: a constant may have been read from a data file or from the environment.
+numba compiles the current values of the globals of a function, of its closure and of the functions that it
+calls. So the key is made of all of these values, at the time of compilation, for every function that is
+called, from any package: a constant may have been read from a data file or from the environment.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import _Intrinsic
 
 PLAIN = (bool, int, float, complex, str, bytes, type(None), type(...))
-"""Classes whose ``repr`` says all."""
+"""Classes whose ``repr`` describes the value completely."""
 PLAIN_TYPES = (types.Number, types.Boolean, types.NoneType, types.UnicodeType, types.Literal, types.Omitted)
-"""Types of numba whose ``repr`` says all. That of a function says where it lies in memory."""
+"""Types of numba whose ``repr`` is complete. That of a function, in contrast, holds its memory address."""
 KNOWN = ("builtins", "math", "cmath", "operator", "numpy", "numba")
-"""Packages whose functions and modules are known by their names: numba has its own code for them."""
+"""Packages whose functions and modules are identified by name: numba has its own code for them."""
 OPTIONS = ("BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE")
-"""What the environment (``NUMBA_…``) changes in the code."""
+"""Settings (``NUMBA_…`` in the environment) that change the compiled code."""
 
 
 class Unknown(Exception):
-    """No key can be found, so that the code must not be kept."""
+    """There is no key, so that the code must not be kept."""
 
 
 def fingerprint(function: Dispatcher) -> str:
     """Key of a compiled function: of its code, its constants and all that it calls, as they are now.
 
     Raises:
-        Unknown: something is compiled into it that can change without a trace. A plain Python function is
-            such a thing, since numba may have been given any code for it (``numba.extending.overload``).
+        Unknown: something is compiled into it whose change cannot be seen, such as a plain Python function:
+            numba may have been given any code for it (``numba.extending.overload``).
     """
     return _Walk().function(function)
 
@@ -50,7 +50,7 @@ def signature_key(arguments: Iterable[types.Type], options: Iterable[str] = OPTI
     """Key of the types that a function is compiled for, and of the compiler's settings.
 
     Raises:
-        Unknown: a type is not known by what it is called.
+        Unknown: the name of a type does not describe it completely.
     """
     settings = [f"{name}={getattr(numba.config, name)}" for name in options]
     return _hash([*settings, *map(_type, arguments)])
@@ -103,7 +103,7 @@ class _Walk:
 
     def _content(self, function: Dispatcher) -> Iterator[str]:
         if not isinstance(_cache(function), NullCache):
-            raise Unknown(f"{function} is kept by numba itself, which looks at its file alone")
+            raise Unknown(f"{function} is kept by numba itself, which checks only its own file")
         python = function.py_func
         yield self.key(python.__code__)
         yield self.key((python.__defaults__, python.__kwdefaults__))
@@ -112,14 +112,14 @@ class _Walk:
             try:
                 yield self.key(cell.cell_contents)
             except ValueError:
-                raise Unknown(f"{function} closes over what is not there yet") from None
+                raise Unknown(f"{function} uses a variable of its closure that has no value yet") from None
         for name, attributes in _globals(python.__code__):
             found = python.__globals__.get(name, getattr(builtins, name, None))
             yield name
             yield self._module(found, attributes) if isinstance(found, ModuleType) else self.key(found)
 
     def _module(self, module: ModuleType, attributes: tuple[str, ...]) -> str:
-        """Key of what a module has under these names: ``constants.VISCOSITY`` is a constant too."""
+        """Key of these attributes of a module: ``constants.VISCOSITY`` is a constant too."""
         if _is_known(module.__name__):
             return module.__name__
         found = [(name, getattr(module, name)) for name in attributes if hasattr(module, name)]
@@ -136,7 +136,7 @@ class _Walk:
 
 @cache
 def _globals(code: CodeType) -> list[tuple[str, tuple[str, ...]]]:
-    """Globals that a code uses, with that of functions inside of it, and all names of attributes in it."""
+    """Globals that a code object and its inner functions use, and all names of attributes in it."""
     names: dict[str, None] = {}
     attributes = set(code.co_names)
     for instruction in dis.get_instructions(code):

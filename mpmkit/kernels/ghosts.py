@@ -1,10 +1,11 @@
-"""Ghosts behind a wall that may stand anywhere: they continue what is in front of it, as a mirror does.
+"""Ghosts behind a wall at any place and angle: they continue the field in front of it, as a mirror does.
 
-A ghost has v_ghost = w + R (v_image - w). R reverses the normal part (mirror), or all of it (odd). What
-particles put on a ghost is folded onto the nodes around its image, with the weights by which it is filled
-back: the two are transposes of each other. Averages of scalars fold and fill all nodes behind the wall.
+A ghost has v_ghost = w + R (v_image - w). R reverses the normal part (mirror), or the whole vector (odd).
+Mass, momentum and force of a ghost are folded onto the nodes around its image, with the weights with which
+its velocity is filled back: the two operations are transposes of each other. Averages of scalars fold and
+fill all nodes behind the wall.
 
-``nodes`` is (count, NODE), see ``scatter``. There are few ghosts, and these loops run in one thread.
+``nodes`` is (count, NODE), see ``scatter``. There are few ghosts, so these loops run in one thread.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from .compile import function
 
 @function()
 def _reflect(vector, m, w, normal, odd, out):
-    """out = m w + R (vector - m w): the part against the wall reversed along the normal, or all of it."""
+    """out = m w + R (vector - m w): relative to the wall, the normal part or the whole vector is reversed."""
     along = 0.0
     for a in range(len(normal)):
         along += (vector[a] - m * w[a]) * normal[a]
@@ -26,9 +27,9 @@ def _reflect(vector, m, w, normal, odd, out):
 
 @function()
 def fold(nodes, ghost, at, normal, wall_velocity, index, weight, touched, odd, momentum, forces, held):
-    """Add what lies on touched ghosts to the nodes around their images, and clear the ghosts.
+    """Add the records of touched ghosts to the nodes around their images, and clear the ghosts.
 
-    ``held`` (k, 1 + 2 dim) keeps mass, momentum and force of each, for its share in the force of the wall.
+    ``held`` (k, 1 + 2 dim) keeps mass, momentum and force of each, to compute its part of the wall force.
     """
     dim = normal.shape[1]
     first, last = 0 if momentum else 1 + dim, 1 + (2 if forces else 1) * dim
@@ -63,10 +64,11 @@ def fill(
 ):
     """Give touched ghosts the velocity of their images, mirrored; the transpose of ``fold``.
 
-    Once ``solved``, ``impulse`` (k, dim) gets what the wall gives by each ghost, N s, with m, p and f of the
-    ghost, m (Δv_ghost - Δv_image) + dt (R f - f), and ``mapped`` what it gave in mapping, with the velocities
-    as mapped, v - Δv: m (v_ghost - v_image) + R p - p. A face of the grid that begins to push only now may
-    have changed these.
+    After the momentum equation (``solved``), ``impulse`` (k, dim), N s, becomes the impulse of the wall
+    through each ghost, m (Δv_ghost - Δv_image) + dt (R f - f), with m, p and f of the ghost. ``mapped``
+    becomes that of the mapping, m (v_ghost - v_image) + R p - p, with the velocities as mapped, v - Δv. It is
+    computed only now, because a face of the grid that begins to push in this step may change these
+    velocities.
     """
     dim = normal.shape[1]
     v, change, folded, none = np.empty(dim), np.empty(dim), np.empty(dim), np.zeros(dim)
@@ -97,8 +99,8 @@ def fill(
 
 @function()
 def press(ghost, normal, foot, foot_weight, held, dt, pressed):
-    """Add to ``pressed`` (nodes,) of the nodes at the wall what it gives along its normal by the ghosts, N s:
-    dt (R f - f)·n = -2 dt f·n of each."""
+    """Add the normal impulses of the wall through its ghosts, N s, to ``pressed`` (nodes,) at the wall's
+    nodes: dt (R f - f)·n = -2 dt f·n for each ghost."""
     dim = normal.shape[1]
     for k in ghost:
         if foot_weight[k, 0] >= 0.0:
@@ -111,7 +113,7 @@ def press(ghost, normal, foot, foot_weight, held, dt, pressed):
 
 @function()
 def fold_pairs(pairs, behind, at, index, weight, touched, held):
-    """Add the sums of an average at touched ghosts to the nodes around their images, and clear them."""
+    """Add the sums of an average at touched ghosts to the nodes around their images, and clear the ghosts."""
     for k in behind:
         g = at[k]
         held[k, 0] = held[k, 1] = 0.0

@@ -1,4 +1,4 @@
-"""Where particles are: inside the domain, and still near the block and window they were sorted into."""
+"""Checks where particles are: in the domain, and near the block and window into which they were sorted."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HERE, STRAYED, LOST = range(3)
 """All particles in place; one has drifted too far from its block or window; one is outside or not finite."""
 
 SHARES = 64
-"""Shares into which the blocks are dealt out, one by one."""
+"""Number of shares among which the blocks are distributed in turn."""
 
 
 @cache
@@ -26,14 +26,14 @@ def locate(dim: int):
 
     A particle may drift anywhere between the cells ``window_low`` and ``window_high``, but no more than one
     cell beyond its block. ``block_first[g, b]`` is the first particle of block b in group g, and
-    ``block_cell`` its lowest cell; ``verdicts`` is scratch, two integers a block.
+    ``block_cell`` its lowest cell; ``verdicts`` is scratch, two integers for each block.
     """
 
     @inline()
     def all_here(position, half_size, begin, end, extent, inverse_cell, block_cell, window_low, window_high):
         """Whether all particles of a block are in place, as they nearly always are.
 
-        The arrays are flat, so that the compiler takes several particles at once.
+        The arrays are flat, so that the compiler can treat several particles at once.
         """
         good = True
         for d in range(dim):
@@ -55,7 +55,7 @@ def locate(dim: int):
         position, half_size, extent, inverse_cell, block_first, block_cell, window_low, window_high, verdicts
     ):
         blocks, positions, half_sizes = len(block_cell), position.reshape(-1), half_size.reshape(-1)
-        for share in prange(SHARES):  # of every colour some blocks: neighbours differ in load
+        for share in prange(SHARES):  # each share has blocks of every colour: neighbours differ in load
             for b in range(share, blocks, SHARES):
                 worst, who = HERE, -1
                 for g in range(block_first.shape[0]):
@@ -68,7 +68,7 @@ def locate(dim: int):
                         here = there = True
                         for d in range(dim):
                             x, half = position[p, d], half_size[p, d]
-                            # Also false of a NaN; and a box without a size would send the weights anywhere.
+                            # Also false for NaN. A box without a size would give wrong weights.
                             there &= (x >= 0.0) & (x <= extent[d]) & (half > 0.0) & (half < np.inf)
                             cells = x * inverse_cell
                             here &= cells >= max(window_low[d], block_cell[b, d] - 1)
@@ -102,8 +102,8 @@ def wrap(position, axis, length):
 def put_back(position, axis, low, high, most):
     """Put particles that are behind a wall at ``low`` or ``high``, by no more than ``most``, back onto it.
 
-    A wall acts on nodes, and a particle at it moves with the nodes beside as well. One that went further was
-    thrown out, and stays there to be seen.
+    A wall acts on nodes, but a particle at the wall also moves with the nodes beside it. A particle that went
+    further was thrown out by a fault. It stays there, so that the guards see it.
     """
     n = len(position)
     for c in prange(chunk_count(n)):
@@ -119,14 +119,14 @@ def put_back(position, axis, low, high, most):
 def first_unsound(position, velocity, stress, pressure, volume_ratio, least, most, firsts):
     """First particle whose state is not finite or whose volume ratio is not in [least, most]; -1 without one.
 
-    ``firsts`` is scratch, an integer a chunk.
+    ``firsts`` is scratch, an integer for each chunk.
     """
     n, dim = position.shape
     chunks = chunk_count(n)
     for c in prange(chunks):
         first = -1
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            # The sum of finite numbers may overflow, but no run that goes well has any that large.
+            # The sum of finite numbers may overflow, but a sound run has no numbers that large.
             total = pressure[p]
             for d in range(dim):
                 total += position[p, d] + velocity[p, d]
@@ -145,7 +145,7 @@ def first_unsound(position, velocity, stress, pressure, volume_ratio, least, mos
 def first_not_finite(rows, firsts):
     """First of ``rows (n, width)`` with an entry that is not finite; -1 if there is none.
 
-    ``firsts`` is scratch, an integer a chunk.
+    ``firsts`` is scratch, an integer for each chunk.
     """
     n, width = rows.shape
     chunks = chunk_count(n)
@@ -153,7 +153,7 @@ def first_not_finite(rows, firsts):
         first, begin, end = -1, c * CHUNK, min(n, (c + 1) * CHUNK)
         total = 0.0
         for p in range(begin, end):
-            row = 0.0  # of its own, so that rows need not wait for each other
+            row = 0.0  # a sum for each row, so that rows need not wait for each other
             for k in range(width):
                 row += 0.0 * rows[p, k]  # 0 × ∞ is not a number, and nothing overflows
             total += row

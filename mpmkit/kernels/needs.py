@@ -1,6 +1,6 @@
-"""What a run needs: a compiled function, and the types of the arguments that it is called with, as text.
+"""What a run needs: a compiled function, and the types of the arguments of its call, as text.
 
-So it can be kept in a file, and another process can compile it.
+As text it can be kept in a file, and another process can compile it.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from numba.core.dispatcher import Dispatcher
 
 
 class Unnamed(Exception):
-    """A function or a type that cannot be said in text."""
+    """A function or a type that cannot be written as text."""
 
 
 @dataclass(frozen=True)
 class Need:
     """A function of a module, with the types of its arguments.
 
-    Of a function that another one makes, ``name`` is ``<maker>.<locals>.<function>``, and ``made_with`` are
-    the arguments of its maker.
+    If another function makes this function, ``name`` is ``<maker>.<locals>.<function>``, and ``made_with``
+    are the arguments of its maker.
     """
 
     module: str
@@ -38,7 +38,7 @@ class Need:
         return asdict(self)
 
     def function(self) -> Dispatcher:
-        """The function, which has not been compiled by that.
+        """The function; this does not compile it.
 
         Raises:
             Unnamed: there is no such function.
@@ -55,15 +55,15 @@ class Need:
         return found
 
     def signature(self) -> tuple[numba_types.Type, ...]:
-        """The types as numba knows them."""
+        """The types as objects of numba."""
         return tuple(map(_type, self.types))
 
 
 def need_of(function: Dispatcher, signature: Sequence[numba_types.Type]) -> Need:
-    """What was asked for, as text.
+    """A function and the types of its arguments, as text.
 
     Raises:
-        Unnamed: it cannot be said.
+        Unnamed: one of them cannot be written as text.
     """
     python = function.py_func
     maker, _, made = python.__qualname__.partition(".<locals>.")
@@ -76,8 +76,8 @@ def need_of(function: Dispatcher, signature: Sequence[numba_types.Type]) -> Need
 
 
 def _text(kind: numba_types.Type) -> str:
-    """``float64``, ``float64 2 C`` of an array with two axes that lies in memory as C has it, or ``tuple 3
-    int64`` of three integers."""
+    """``float64``, ``float64 2 C`` for an array with two axes in C order, or ``tuple 3 int64`` for three
+    integers."""
     if isinstance(kind, numba_types.UniTuple):
         return f"tuple {kind.count} {_text(kind.dtype)}"
     if (

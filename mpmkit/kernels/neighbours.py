@@ -1,4 +1,4 @@
-"""The least of a node or cell and its neighbours, on a block (ni, nj, nk), with nj = 1 in two dimensions."""
+"""Smallest value of a node or cell and its neighbours, on a block (ni, nj, nk), with nj = 1 in 2-D."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from .compile import kernel
 
 
 def least_around(values, least):
-    """Least of each and all its neighbours, corners included; what is beyond the block counts 0."""
+    """Smallest value of each and all its neighbours, corners included; beyond the block the value is 0."""
     least[...] = values
-    for axis in _axes(values):  # the least of rows, then of planes, then of blocks
+    for axis in _axes(values):  # the minimum of rows, then of planes, then of blocks
         _along(_split(least.copy(), axis), 0.0, _split(least, axis))
 
 
 def least_beside(values, least):
-    """Least of each and those that share a face with it; what is beyond the block does not count."""
+    """Smallest value of each and those that share a face with it; nothing beyond the block counts."""
     least[...] = values
     for axis in _axes(values):
         _along(_split(values, axis), np.inf, _split(least, axis))
@@ -27,13 +27,13 @@ def _axes(values):
 
 
 def _split(values, axis):
-    """(before, n, behind): all that lies before an axis as one axis, and all that lies behind it."""
+    """Reshape to (before, n, behind): the axes before an axis become one axis, and those behind it too."""
     return values.reshape(int(np.prod(values.shape[:axis])), values.shape[axis], -1)
 
 
 @kernel()
 def _along(values, beyond, least):
-    """The least of what is there and of the two beside it along the axis in the middle."""
+    """Smallest of ``least``, and of the two values beside each along the middle axis."""
     before, n, behind = values.shape
     for row in prange(before * n):
         i, j = row // n, row % n

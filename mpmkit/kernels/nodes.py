@@ -1,26 +1,26 @@
-"""Nodes alone: images at the faces, velocities, the momentum equation and its boundary conditions.
+"""Loops over nodes: images at the faces, velocities, the momentum equation and its boundary conditions.
 
-A mirror face (a symmetry plane) is exact: what particles put on the ghost nodes behind it is folded onto the
-image in front of it with the normal component reversed, as the mirrored scene would put it there, and after
-the momentum equation the ghosts get the image's velocity back. A periodic face folds and fills in the same
-way.
+A mirror face (a symmetry plane) is exact. The records of the ghost nodes behind it are folded onto the images
+in front of it with the normal component reversed, as particles of the mirrored scene would add them. After
+the momentum equation the ghosts get the velocity of their images back. A periodic face folds and fills in the
+same way.
 
-A wall acts only at nodes that are touched, see ``kernels.touch``; behind the others it is open. Where it
-acts, a Coulomb wall (a slip wall is one without friction) is a mirror, and a stick wall continues the
-velocity as an odd function, all components reversed. A Coulomb wall, and a stick wall that releases, acts
-at those of the touched nodes that it pushed when the momentum equation was solved last.
+A wall acts only at nodes that are touched, see ``kernels.touch``; at the others it is open. Where it acts, a
+Coulomb wall (a slip wall is one without friction) is a mirror, and a stick wall continues the velocity as an
+odd function, with all components reversed. A Coulomb wall, or a stick wall that releases, acts only at those
+touched nodes that it pushed when the momentum equation was last solved.
 
-Setting the ghosts' normal velocity to zero instead, as is often done, takes the normal strain out of every
+Often the normal velocity of the ghosts is set to zero instead. This removes the normal strain from every
 particle whose box overlaps the wall, and such particles lock: see docs/findings.md.
 
-``nodes`` is (count, NODE). Nodes that no particle can reach are zero and left out: ``rows`` holds the first
-node and the one after the last of each row that is reached, and ``tasks`` cuts the rows into pieces of about
-equal load. ``mirrors`` lists (ghost, image, node of the wall) of ``PLANES`` planes an axis, each from its
-entry of ``plane_first`` on. Entries of one plane have no node in common; images of two planes may be the same
-nodes. ``faces[a, side]`` is one of the codes below.
+``nodes`` is (count, NODE). Nodes that no particle can reach are zero and are skipped: ``rows`` holds, for
+each row that is reached, its first node and the one after its last. ``tasks`` divides the rows into pieces of
+about equal load. ``mirrors`` lists (ghost, image, node of the wall) for the ``PLANES`` planes of each axis. A
+plane begins at its entry of ``plane_first``. Entries of one plane have no node in common; images of two
+planes may be the same nodes. ``faces[a, side]`` is one of the codes below.
 
-``given`` (faces, …) are the sums of what the faces give to the material, in the order of ``faces``; see
-``face_impulses``, as for ``place`` and ``held``, which have a row for each of ``mirrors``.
+``given`` (faces, …) are the sums of the impulses that the faces give to the material, in the order of
+``faces``. ``place`` and ``held`` have a row for each of ``mirrors``. See ``face_impulses`` for all three.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from .compile import function, inline, kernel
 from .scatter import CONTACT, NODE, PUSHED, TOUCHED
 
 PLANES = 3
-"""Planes of ghosts an axis: of its lower face, of its upper face, and the upper face of a periodic axis."""
+"""Planes of ghosts for each axis: lower face, upper face, and upper face of a periodic axis."""
 OPEN, MIRROR, STICK, PERIODIC, FRICTION, RELEASING_STICK = range(6)
 
 
 @inline()
 def is_wall(face):
-    """Whether a face acts only where it is touched."""
+    """Whether a face acts only at touched nodes."""
     return face in (STICK, FRICTION, RELEASING_STICK)
 
 
@@ -55,14 +55,14 @@ def _acting(face, a):
 
 @inline()
 def holds(face, contact, a):
-    """Whether a face across axis a holds a node in its plane, from what the node knows of contact."""
+    """Whether a face across axis a holds a node in its plane, from the contact bits of the node."""
     acting = _acting(face, a)
     return face not in (OPEN, PERIODIC) and (not acting or contact & acting)
 
 
 @kernel()
 def clear(nodes, rows, tasks):
-    """All records to zero, but for what is known of contact with a wall."""
+    """Set all records to zero, except the bits of contact with a wall."""
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
             for i in range(rows[r, 0], rows[r, 1]):
@@ -72,9 +72,9 @@ def clear(nodes, rows, tasks):
 
 @function()
 def _move(nodes, mirrors, acting, first, last, sign, folding):
-    """Slots first..last-1 of ghosts, times ``sign``, onto their images; or back, if not ``folding``.
+    """Add slots first..last-1 of ghosts, times ``sign``, to their images; or copy back, if not ``folding``.
 
-    With ``acting``, a bit of ``CONTACT``, only if the node between them has it.
+    If ``acting``, a bit of ``CONTACT``, is not 0, only where the wall node between them has this bit.
     """
     for k in range(len(mirrors)):
         ghost, image, wall = mirrors[k]
@@ -89,7 +89,7 @@ def _move(nodes, mirrors, acting, first, last, sign, folding):
 
 @function()
 def _parity(face, axis, dim, vectors):
-    """Sign of every slot under reflection at a face: scalars are even, what the face reverses is odd."""
+    """Sign of every slot under reflection at a face: 1 for scalars, -1 for components that it reverses."""
     sign = np.ones(NODE)
     if vectors and face != PERIODIC:
         for d in range(dim):
@@ -109,7 +109,7 @@ def _reflect_plane(nodes, face, axis, of_plane, dim, first, last, vectors, foldi
 def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
     dim = len(faces)
     for step in range(dim):
-        a = step if folding else dim - 1 - step  # filling undoes folding in the opposite order
+        a = step if folding else dim - 1 - step  # filling goes through the axes in the opposite order
         for plane in range(PLANES):
             begin, end = plane_first[PLANES * a + plane], plane_first[PLANES * a + plane + 1]
             if begin < end:
@@ -119,7 +119,7 @@ def _reflect(nodes, faces, mirrors, plane_first, first, last, vectors, folding):
 
 @function()
 def fold(nodes, faces, mirrors, plane_first, first, last, vectors):
-    """Add what lies on ghost nodes to their images, slots first..last-1, and clear the ghosts.
+    """Add slots first..last-1 of ghost nodes to their images, and clear the ghosts.
 
     With ``vectors``, slots 1..dim and dim+1..2 dim are the components of vectors; otherwise all are scalars.
     """
@@ -134,7 +134,7 @@ def fill(nodes, faces, mirrors, plane_first, first, last, vectors):
 
 @function()
 def fold_held(nodes, faces, mirrors, plane_first, first, last, held):
-    """``fold`` of vectors that keeps in ``held`` what lay on the ghosts of closed faces."""
+    """``fold`` of vectors that keeps the records of the ghosts of closed faces in ``held``."""
     dim = len(faces)
     for a in range(dim):
         for plane in range(PLANES):
@@ -150,10 +150,10 @@ def fold_held(nodes, faces, mirrors, plane_first, first, last, held):
 def fill_counted(
     nodes, faces, mirrors, plane_first, last, solved, dt, place, cell_size, held, is_last, given, mapped
 ):
-    """``fill`` of vectors, slots 1..last-1, that counts what the faces give by it.
+    """``fill`` of vectors, slots 1..last-1, that also counts the impulses of the faces.
 
-    ``solved``: in a step of ``dt`` s. ``is_last``: whether that is the last filling of a step; otherwise
-    walls of the case act afterwards.
+    ``solved``: whether the momentum equation of the step of ``dt`` s has been solved. ``is_last``: whether
+    this is the last filling of the step; if not, walls of the case act afterwards.
     """
     dim = len(faces)
     for step in range(dim):
@@ -189,7 +189,8 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved, place, give
     """Boundary conditions on the velocity and, once ``solved``, on its change.
 
     Where walls meet, a node has the conditions of all of them. The pushes of all Coulomb walls come first,
-    then the other walls, then the drag of the Coulomb walls: no axis is before another.
+    then the other walls, then the drag of the Coulomb walls. So the result does not depend on the order of
+    the axes.
     """
     dim = len(faces)
     grip = np.zeros(len(mirrors) if solved else 0)  # largest drag on each wall node, m/s
@@ -211,7 +212,7 @@ def _constrain(nodes, faces, mirrors, plane_first, friction, solved, place, give
 
 @inline()
 def _change(node, dim, d, change, solved, place, k, given):
-    """Change a velocity along axis d and, once ``solved``, its change, by an impulse of a face."""
+    """Change a velocity along axis d and, once ``solved``, its change; count the impulse of the face."""
     face_impulses.add(given, dim, place, k, d, node[0] * change)
     if solved:
         node[1 + dim + d] += change
@@ -220,12 +221,12 @@ def _change(node, dim, d, change, solved, place, k, given):
 
 @function()
 def _push(nodes, dim, mirrors, a, inward, coefficient, grip, place, given):
-    """A wall that pushes and does not pull; ``grip`` becomes the slip that it can take up at each node.
+    """A wall that pushes and does not pull; ``grip`` becomes the slip that friction can stop at each node.
 
-    Whether it pushes a node that is touched is decided once a step, by the momentum equation: it does if it
-    must take up velocity towards it. Until the next decision the normal velocity is held, whatever its
-    sign; a wall that let go as soon as the mapped velocity turned would strain the last cell on approach
-    but never on departure, and with USF and MUSL feed energy in.
+    The momentum equation decides once in a step whether the wall pushes a touched node: it does if the
+    velocity points into the wall. Until the next decision the normal velocity is held, whatever its sign. A
+    wall that let go as soon as the mapped velocity points away would strain the last cell on approach but
+    never on departure. With USF and MUSL this would add energy.
     """
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
@@ -241,7 +242,7 @@ def _push(nodes, dim, mirrors, a, inward, coefficient, grip, place, given):
 
 @function()
 def _hold(nodes, dim, mirrors, acting, a, sticks, solved, place, given):
-    """Nodes where a face acts have its velocity, zero: along the normal, or all of it if it ``sticks``."""
+    """Set the velocity of nodes where a face acts to zero: the normal part, or all of it if it ``sticks``."""
     for k in range(len(mirrors)):
         node = nodes[mirrors[k, 2]]
         if not acting or int(node[CONTACT]) & acting:
@@ -252,7 +253,7 @@ def _hold(nodes, dim, mirrors, acting, a, sticks, solved, place, given):
 
 @function()
 def _drag(nodes, dim, mirrors, a, grip, place, given):
-    """Coulomb's law: drag takes at most coefficient × push from the slip, and never turns it round."""
+    """Coulomb's law: drag reduces the slip by at most coefficient × push, and never reverses it."""
     for k in range(len(mirrors)):
         if grip[k] > 0.0:
             node = nodes[mirrors[k, 2]]
@@ -269,9 +270,9 @@ def _drag(nodes, dim, mirrors, a, grip, place, given):
 
 @kernel()
 def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, plane_first):
-    """Σ w / room, from 1 to ``most``, at all nodes but ghosts, which count to their images.
+    """Σ w / room, limited to 1 … ``most``, at all nodes; ghosts are added to their images.
 
-    Leaves ``pairs`` empty.
+    ``pairs`` is zero afterwards.
     """
     fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
@@ -283,7 +284,7 @@ def find_crowding(pairs, room, most, crowding, rows, tasks, faces, mirrors, plan
 
 @kernel()
 def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, plane_first):
-    """Σ w f / crowding at every node, with what lies on ghosts folded in."""
+    """Σ w f / crowding at every node; ghosts are added to their images."""
     fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
         for r in range(tasks[t], tasks[t + 1]):
@@ -293,9 +294,9 @@ def relieve_pairs(pairs, crowding, rows, tasks, faces, mirrors, plane_first):
 
 @kernel()
 def divide_pairs(pairs, average, rows, tasks, faces, mirrors, plane_first):
-    """Σ w f / Σ w at every node, zero where nothing is, with what lies on ghosts folded in and filled back.
+    """Σ w f / Σ w at every node, zero where there is no material; ghosts are folded in and filled back.
 
-    Leaves ``pairs`` empty, for the next average.
+    ``pairs`` is zero afterwards, ready for the next average.
     """
     fold(pairs, faces, mirrors, plane_first, 0, 2, False)
     for t in prange(len(tasks) - 1):
@@ -311,10 +312,10 @@ def divide_pairs(pairs, average, rows, tasks, faces, mirrors, plane_first):
 def momentum_to_velocity(
     nodes, rows, tasks, faces, mirrors, plane_first, friction, place, cell_size, held, walls_act, mapped
 ):
-    """v = p / m, with the conditions on the faces and the ghosts filled. Forces are left as they are.
+    """v = p / m, with the conditions on the faces, and the ghosts filled. Forces are not changed.
 
-    ``walls_act``: whether walls of the case act afterwards. ``mapped`` gets what the faces have given by it,
-    but for their ghosts, which are counted when the momentum equation is solved.
+    ``walls_act``: whether walls of the case act afterwards. ``mapped`` becomes the impulses of the faces,
+    without those through their ghosts, which are counted when the momentum equation is solved.
     """
     dim = len(faces)
     for t in prange(len(tasks) - 1):
@@ -340,9 +341,9 @@ def solve_momentum(
     nodes, rows, tasks, faces, mirrors, plane_first, friction, place, cell_size, held, walls_act, given,
     mapped, dt,
 ):  # fmt: skip
-    """Δv = dt f / m, v ← v + Δv, with the conditions on the faces and the ghosts filled.
+    """Δv = dt f / m, v ← v + Δv, with the conditions on the faces, and the ghosts filled.
 
-    Adds to ``given`` what the faces give by it, and to ``mapped`` what their ghosts have given in mapping.
+    Adds the impulses of the faces to ``given``, and those of the mapping through their ghosts to ``mapped``.
     """
     dim = len(faces)
     for t in prange(len(tasks) - 1):
@@ -355,7 +356,8 @@ def solve_momentum(
                         nodes[i, 1 + d] += change
                         nodes[i, 1 + dim + d] = change
     _constrain(nodes, faces, mirrors, plane_first, friction, True, place, given)
-    # With contact, the record's last: a wall pushes a ghost in its plane where it pushes its image.
+    # CONTACT, the last entry of a record, is filled too: a wall pushes a ghost in its plane if it pushes its
+    # image.
     fill_counted(
         nodes, faces, mirrors, plane_first, CONTACT + 1, True, dt, place, cell_size, held, not walls_act,
         given, mapped,

@@ -1,4 +1,4 @@
-"""Which particles lie closest to each other."""
+"""Finds the nearest neighbours among particles."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from .compile import kernel
 
 @kernel()
 def nearest_partners(first, position, kind, size, largest, partner, square):
-    """The nearest particle of the same cell and kind with which the sizes come to ``largest`` at most.
+    """The nearest particle of the same cell and kind, if the sum of both sizes is at most ``largest``.
 
     Args:
         first: ``(cells + 1,)``, where each cell begins in the other arrays.
         position: ``(n, dim)``.
         kind: ``(n,)`` integers.
         size: ``(n,)``.
-        largest: of the sum of two sizes.
-        partner: ``(n,)``, becomes the index of the nearest particle, of several the first; -1 if there is no
-            such particle.
+        largest: largest sum of two sizes.
+        partner: ``(n,)``, becomes the index of the nearest particle, the first of several at equal distance;
+            -1 if there is none.
         square: ``(n,)``, becomes the square of its distance.
     """
     dim = position.shape[1]

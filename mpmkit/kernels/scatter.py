@@ -2,9 +2,9 @@
 
 Particles are kept in blocks of cells. Blocks of one colour touch no common node, so that each colour is
 scattered in parallel without a race, in an order that does not depend on the number of threads. A node is a
-record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` what it has to do with
-walls. A particle adds one vector to each record, which is built up axis by axis: what does not depend on
-the innermost axis is multiplied out before it.
+record of ``NODE`` doubles: mass, momentum (dim), force (dim), and at ``CONTACT`` the bits of contact with
+walls. A particle adds one vector to each record. The vector is built up axis by axis: factors that do not
+depend on the innermost axis are multiplied before the loop over it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from .vectors import (
     lane,
     load,
     load_first,
+    load_twice,
     multiply,
     pack,
     picker,
@@ -27,16 +28,18 @@ from .vectors import (
     scale,
     spread,
     store,
+    store_half,
     zero,
 )
 
 NODE = LANES
 """Doubles in a node's record: one cache line, one vector."""
 CONTACT = NODE - 1
-"""Entry of a record that holds a whole number, a sum of bits: of an axis a node lies on one face at most."""
+"""Entry of a record that holds a whole number, a sum of bits. A node lies on at most one face of an axis."""
 PUSHED, TOUCHED = 1, 8
-"""The bits of axis 0; those of axis a are ``PUSHED << a`` and ``TOUCHED << a``: whether the wall pushed the
-node when the momentum equation was solved last, and whether material has reached it there in this step."""
+"""The bits of axis 0; those of axis a are ``PUSHED << a`` and ``TOUCHED << a``. They say whether the wall
+pushed the node when the momentum equation was last solved, and whether material has reached the wall there in
+this step."""
 PAIR = 2
 """Doubles in a node's record of an average: measure and measure × value."""
 LARGEST_SUPPORT = LANES // PAIR
@@ -61,9 +64,9 @@ def add(nodes, at, weight, X, slope, Y):
 # The pickers name lanes of two vectors: 0 to 7 of the first, 8 to 15 of the second. Of a row of the stress,
 # xx, yy, zz, yz, xz, xy, 0, 0, as the second, lane 14 is zero.
 _BESIDE = picker(8, 0, 1, 2, 3, 4, 5, 6)
-"""1 and a velocity: what the mass of a particle comes with."""
+"""1 and a velocity, to be multiplied by the mass of a particle."""
 _SLOPE_2D, _SLOPE_3D = picker(0, 0, 0, 8, 8, 8, 8, 8), picker(0, 0, 0, 0, 8, 8, 8, 8)
-"""A lever for the momentum, a gradient for the force."""
+"""The lever in the lanes of the momentum, the gradient in those of the force."""
 _COLUMN_0_2D, _COLUMN_1_2D = picker(14, 0, 2, 8, 13, 14, 14, 14), picker(14, 1, 3, 13, 9, 14, 14, 14)
 """Columns of the affine part c00, c01, c10, c11 and of the stress, in two dimensions."""
 _COLUMN_0, _COLUMN_1 = picker(14, 0, 3, 6, 8, 13, 12, 14), picker(14, 1, 4, 7, 13, 9, 11, 14)
@@ -77,7 +80,8 @@ def scatter(dim: int, support: int):
 
     ``scatter(nodes, strides, lower, tasks, base, weight, gradient, hoop, mass, velocity, affine, volume,
     stress, pressure, acceleration, cell_size, momentum, forces)`` adds mass and momentum (if ``momentum``)
-    and the force (if ``forces``) of all particles. ``acceleration`` has a row for each, or one for all.
+    and the force (if ``forces``) of all particles. ``acceleration`` has a row for each particle, or one for
+    all.
 
     m v = Σ m N (v + C (x_node - x̄)), with the affine part C, 1/s, where ``affine`` has columns, about the
     centroid x̄ = Σ N x_node, so that it adds no momentum.
@@ -223,8 +227,8 @@ def _scatter_3d(support):
 def scatter_pairs(dim: int, support: int):
     """The kernel that adds Σ measure N and Σ measure N value of a particle field to ``pairs (nodes, 2)``.
 
-    A row of pairs is one vector, whose last lanes add nothing to the nodes behind the particle's; the window
-    has two nodes more along its last axis for them, and blocks are wide enough.
+    A row of pairs is one vector. Its last lanes are zero and are added to the nodes behind those of the
+    particle: the window has two more nodes along its last axis for them, and blocks are wide enough.
     """
 
     @kernel()
@@ -264,3 +268,40 @@ def scatter_pairs(dim: int, support: int):
                                     store(pairs, at, plus(load(pairs, at), w3, of_plane))
 
     return scatter_pairs
+
+
+@cache
+def scatter_scalar(dim: int, support: int):
+    """The kernel that adds Σ N amount of the particles to ``sums (nodes,)``.
+
+    A row is four doubles. As in ``scatter_pairs``, those behind the particle's nodes add nothing.
+    """
+
+    @inline()
+    def add_row(sums, at, weight, row):
+        store_half(sums, at, plus(load_twice(sums, at), weight, row))
+
+    @kernel()
+    def scatter_scalar(sums, strides, lower, tasks, base, weight, amount):
+        groups, last = tasks.shape[0], dim - 1
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
+        for colour in range(tasks.shape[1]):
+            for task in prange(tasks.shape[2] - 1):
+                for g in range(groups):
+                    for p in range(tasks[g, colour, task], tasks[g, colour, task + 1]):
+                        first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
+                        w2 = weight[p, last, 2] if support > 2 else 0.0
+                        w3 = weight[p, last, 3] if support > 3 else 0.0
+                        row = pack(weight[p, last, 0], weight[p, last, 1], w2, w3, 0.0, 0.0, 0.0, 0.0)
+                        row = scale(amount[p], row)
+                        if dim == 2:
+                            for a in range(support):
+                                add_row(sums, first + a * plane, weight[p, 0, a], row)
+                        else:
+                            first += (base[p, 1] - low1) * line
+                            for a in range(support):
+                                of_plane = scale(weight[p, 0, a], row)
+                                for b in range(support):
+                                    add_row(sums, first + a * plane + b * line, weight[p, 1, b], of_plane)
+
+    return scatter_scalar

@@ -14,9 +14,10 @@ from .compile import CHUNK, chunk_count, kernel
 def section_distance(x, start, end):
     """Signed distance φ, m, ``(k,)``, above 0 outside, and its gradient, ``(k, 2)``.
 
-    The nearest edge decides; of several, the first. Where its foot is between its ends, φ is the distance of
-    its line, signed by the side; else it is that of the corner. A ray from the point along the first axis
-    crosses the edges an odd number of times if the point is in the region, and says the sign of a corner.
+    φ is the distance of the nearest edge (the first of several at equal distance). If the foot of the point
+    lies between the ends of the edge, φ is the distance of its line, with the sign of the side; otherwise φ
+    is the distance of the corner. For the sign at a corner, a ray from the point along the first axis crosses
+    the edges an odd number of times if the point is in the region.
 
     Args:
         x: points, m, ``(k, 2)``.
@@ -27,7 +28,7 @@ def section_distance(x, start, end):
     for c in prange(chunk_count(k)):
         for p in range(c * CHUNK, min(k, (c + 1) * CHUNK)):
             nearest, at_corner, inside = np.inf, False, False
-            distance[p] = gradient[p, 0] = gradient[p, 1] = np.nan  # of a point that is not a number
+            distance[p] = gradient[p, 0] = gradient[p, 1] = np.nan  # stays so if the point is not a number
             for e in range(len(start)):
                 ax, ay, bx, by = start[e, 0], start[e, 1], end[e, 0], end[e, 1]
                 length = math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)

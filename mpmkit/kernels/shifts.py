@@ -1,4 +1,4 @@
-"""Particles that are shifted, and what their velocity is where they come to."""
+"""Shifts particles, and finds their velocity at the new places."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from .compile import CHUNK, chunk_count, kernel
 def shift(position, displacement, low, high, affine, change):
     """x ← min(max(x + δx, low), high), and the change C δx of the velocity by its affine part C, 1/s.
 
-    Who is not shifted stays where it is, to the bit, be it beyond ``low`` or ``high``.
+    A particle whose displacement is 0 keeps its position to the bit, also beyond ``low`` or ``high``.
 
     Args:
         position, displacement: ``(n, dim)``, m.
         low, high: ``(dim,)``, m.
-        affine: ``(n, dim, dim)``, 1/s; without columns there is no affine part.
-        change: ``(n, dim)``, m/s, of the velocity; written where there is an affine part.
+        affine: ``(n, dim, dim)``, 1/s; no columns if there is no affine part.
+        change: ``(n, dim)``, m/s, becomes the change of the velocity if there is an affine part.
     """
     n, dim = position.shape
     has_affine = affine.shape[1] > 0

@@ -1,7 +1,8 @@
 """The order of the particles in memory: colour by colour, block by block, cell by cell.
 
-A block is ``BLOCK_WIDTH`` cells wide along every axis; its colour is the parity of its place along each, so
-that two blocks of one colour are never neighbours. A block's nodes fit into the cache nearest to a core.
+A block is ``BLOCK_WIDTH`` cells wide along every axis. Its colour is the parity of its number along each
+axis, so that two blocks of one colour are never neighbours. The nodes of a block fit into the L1 cache of a
+core.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ from numba import prange
 from .compile import CHUNK, chunk_count, function, kernel
 
 BLOCK_WIDTH = 6
-"""Cells. A particle that has drifted a cell out of its block touches nodes from 2 below to 2 above the
-block's cells and one more, and a row of pairs reaches a node beyond that; with 6 cells blocks of one colour
-never meet."""
+"""Width in cells. A particle that has drifted a cell out of its block touches nodes from 2 below the block's
+cells to 3 above them, and a row of pairs reaches one node further. With 6 cells, blocks of one colour never
+touch the same node."""
 
 
 @kernel()
@@ -29,10 +30,10 @@ def find_cells(position, inverse_cell, cell):
 
 @function()
 def number_blocks(blocks, block_index, block_cell):
-    """Number all blocks, colour by colour: ``block_index`` by place, ``block_cell`` the lowest cell by
-    number.
+    """Number all blocks, colour by colour. ``block_index`` becomes the number of the block at each place, and
+    ``block_cell`` the lowest cell of the block with each number.
 
-    Returns the first block of each colour, and their number last.
+    Returns the first block of each colour, and, as the last entry, the number of blocks.
     """
     dim = len(blocks)
     colours = 1 << dim
@@ -62,7 +63,7 @@ def number_blocks(blocks, block_index, block_cell):
 
 @kernel()
 def find_keys(cell, low, blocks, block_index, key):
-    """Where a particle belongs: the number of its block and its cell within it, as one integer."""
+    """Sort keys of the particles: number of the block and of the cell within it, as one integer."""
     n, dim = cell.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
@@ -80,7 +81,7 @@ def find_keys(cell, low, blocks, block_index, key):
 def counting_sort(key, begin, end, count, order):
     """Stable order of particles begin..end-1 by their keys, into ``order``.
 
-    ``count`` becomes the first of each key, with one entry more than there are keys.
+    ``count`` has one entry more than there are keys, and becomes the first particle of each key.
     """
     count[:] = 0
     for p in range(begin, end):
@@ -99,7 +100,7 @@ def counting_sort(key, begin, end, count, order):
 
 @kernel()
 def permute(rows, order, out):
-    """out[p] = rows[order[p]], of arrays ``(n, width)``."""
+    """out[p] = rows[order[p]], for arrays ``(n, width)``."""
     n, width = rows.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):

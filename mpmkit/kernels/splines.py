@@ -1,4 +1,4 @@
-"""Quadratic B-splines on a lattice, the parts of boxes in its cells, and slopes of what is on its nodes."""
+"""Quadratic B-splines on a lattice, the parts of boxes in its cells, and the slopes of nodal fields."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ import numpy as np
 from numba import prange
 
 from .compile import CHUNK, chunk_count, function, inline, kernel
+from .vectors import lane, load_twice, plus, zero
 
 SUPPORT, PARTS = 3, 2
-"""Nodes along an axis that a spline touches, and cells that a box no wider than a cell lies in."""
+"""Nodes along an axis that a spline touches, and cells that a box at most one cell wide touches."""
 
 
 @inline()
 def spline(x):
-    """First of the three nodes that the spline of a place touches, its three weights, and the distance of the
-    place from the middle node, -1/2 to 1/2. The place is given in spacings.
+    """First of the three nodes that the spline at a place touches, the three weights, and the distance of the
+    place from the middle node, -1/2 to 1/2. Places and distances are in spacings of the lattice.
     """
     first = math.floor(x - 0.5)
     d = x - first - 1
@@ -26,9 +27,9 @@ def spline(x):
 
 @kernel()
 def fill_splines(x, inverse, base, weight):
-    """Weights ``(n, dim, 3)`` of the quadratic B-spline: a hat averaged over one spacing.
+    """Weights ``(n, dim, 3)`` of the quadratic B-spline: a hat function averaged over one spacing.
 
-    ``inverse`` is one over the spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
+    ``inverse`` is 1 / spacing, 1/m; node ``base + a`` lies at ``(base + a) / inverse``.
     """
     n, dim = x.shape
     for c in prange(chunk_count(n)):
@@ -39,7 +40,7 @@ def fill_splines(x, inverse, base, weight):
 
 @kernel()
 def fill_parts(x, half_size, inverse, base, part):
-    """Part ``(n, dim, 2)`` of each box in cell ``base`` and in the next; a box is at most one cell wide."""
+    """Part ``(n, dim, 2)`` of each box in cell ``base`` and the next one; boxes are at most a cell wide."""
     n, dim = x.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
@@ -53,46 +54,60 @@ def fill_parts(x, half_size, inverse, base, part):
                 part[p, a, 1] = beyond
 
 
+@inline()
+def _change(off, a):
+    """Derivative of weight a, over that of the place in spacings; ``off``: distance from the middle node."""
+    return off - 0.5 if a == 0 else -2 * off if a == 1 else off + 0.5
+
+
+@inline()
+def _along_row(first, second, third, row):
+    return first * lane(row, 0) + second * lane(row, 1) + third * lane(row, 2)
+
+
 @cache
 def gather_slope(dim: int):
     """The kernel that takes Σ ∇N value of a nodal field to the particles, into ``slope (n, dim)``, 1/m.
 
-    The distance d from the middle node, in spacings, is the difference of the outer weights, so that the
-    slopes of the splines need no table: d - 1/2, -2 d and d + 1/2, over the spacing.
+    The distance d from the middle node, in spacings, is the difference of the outer weights. So the slopes of
+    the splines need no table; they are d - 1/2, -2 d and d + 1/2, divided by the spacing. Rows are read as
+    four doubles: ``field`` must have one more of them behind it than nodes.
     """
-    along = dim - 1
+    last = dim - 1
 
     @kernel()
     def gather_slope(field, strides, lower, base, weight, inverse, slope):
-        n, planes = len(base), SUPPORT if dim == 3 else 1
+        n = len(base)
+        plane, line, low0, low1, low2 = strides[0], strides[1], lower[0], lower[1], lower[last]
         for chunk in prange(chunk_count(n)):
-            gradient = np.empty((3, SUPPORT))
             for p in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-                first = 0
-                for d in range(dim):
-                    first += (base[p, d] - lower[d]) * strides[d]
-                    off = weight[p, d, 2] - weight[p, d, 0]
-                    gradient[d, 0] = (off - 0.5) * inverse
-                    gradient[d, 1] = -2 * off * inverse
-                    gradient[d, 2] = (off + 0.5) * inverse
-                sx = sy = sz = 0.0
-                for a in range(SUPPORT):
-                    for b in range(planes):
-                        row = first + a * strides[0] + b * strides[1]
-                        value = change = 0.0
-                        for c in range(SUPPORT):
-                            value += weight[p, along, c] * field[row + c]
-                            change += gradient[along, c] * field[row + c]
-                        if dim == 3:
-                            sx += gradient[0, a] * weight[p, 1, b] * value
-                            sy += weight[p, 0, a] * gradient[1, b] * value
-                            sz += weight[p, 0, a] * weight[p, 1, b] * change
-                        else:
-                            sx += gradient[0, a] * value
-                            sy += weight[p, 0, a] * change
-                slope[p, 0], slope[p, 1] = sx, sy
+                first = (base[p, 0] - low0) * plane + (base[p, last] - low2)
+                off0, off2 = weight[p, 0, 2] - weight[p, 0, 0], weight[p, last, 2] - weight[p, last, 0]
+                value = of_0 = of_1 = zero()
+                if dim == 2:
+                    for a in range(SUPPORT):
+                        row = load_twice(field, first + a * plane)
+                        value = plus(value, weight[p, 0, a], row)
+                        of_0 = plus(of_0, _change(off0, a), row)
+                else:
+                    first += (base[p, 1] - low1) * line
+                    off1 = weight[p, 1, 2] - weight[p, 1, 0]
+                    for a in range(SUPPORT):
+                        of_plane = change = zero()
+                        for b in range(SUPPORT):
+                            row = load_twice(field, first + a * plane + b * line)
+                            of_plane = plus(of_plane, weight[p, 1, b], row)
+                            change = plus(change, _change(off1, b), row)
+                        value = plus(value, weight[p, 0, a], of_plane)
+                        of_0 = plus(of_0, _change(off0, a), of_plane)
+                        of_1 = plus(of_1, weight[p, 0, a], change)
+                w0, w1, w2 = weight[p, last, 0], weight[p, last, 1], weight[p, last, 2]
+                slope[p, 0] = inverse * _along_row(w0, w1, w2, of_0)
                 if dim == 3:
-                    slope[p, 2] = sz
+                    slope[p, 1] = inverse * _along_row(w0, w1, w2, of_1)
+                slope[p, last] = inverse * _along_row(
+                    _change(off2, 0), _change(off2, 1), _change(off2, 2), value
+                )
 
     return gather_slope
 
@@ -101,8 +116,8 @@ def gather_slope(dim: int):
 def add_sizes(dim: int):
     """The function that adds Σ size N of particles in any order to ``sums (nodes,)``.
 
-    It goes from particle to particle without a table of weights, so that it is slower than ``scatter_pairs``
-    and takes no memory: for what is looked at now and then.
+    It uses no table of weights, so that it takes no memory, but is slower than ``scatter_pairs``. Use it for
+    what is needed only rarely.
     """
     along, planes = dim - 1, SUPPORT if dim == 3 else 1
 

@@ -1,4 +1,4 @@
-"""Sums over all particles, chunk by chunk: the same bits whatever the number of threads."""
+"""Sums over all particles, chunk by chunk: equal to the bit for any number of threads."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _ONE = np.ones(1)
 
 @function()
 def _in_order(parts):
-    """Σ parts; in a kernel ``parts.sum()`` would be a sum by threads, whose bits depend on their number."""
+    """Σ parts, in order. In a kernel ``parts.sum()`` would depend on the number of threads."""
     total = 0.0
     for part in parts:
         total += part
@@ -21,7 +21,7 @@ def _in_order(parts):
 
 @kernel()
 def moment(mass, vectors, along):
-    """Σ m v·a, of ``(n,)``, vectors ``(n, dim)`` and a direction ``(dim,)``."""
+    """Σ m v·a, with m ``(n,)``, v ``(n, dim)`` and the direction a ``(dim,)``."""
     n, dim = vectors.shape
     chunks = chunk_count(n)
     parts = np.zeros(chunks)
@@ -37,13 +37,13 @@ def moment(mass, vectors, along):
 
 
 def product(a, b):
-    """Σ a b, of two ``(n,)``."""
+    """Σ a b, for two arrays ``(n,)``."""
     return moment(a, b[:, None], _ONE)
 
 
 @kernel()
 def kinetics(mass, velocity):
-    """Σ m, Σ m v² and the largest v², of ``(n,)`` and ``(n, dim)``."""
+    """Σ m, Σ m v² and the largest v², with m ``(n,)`` and v ``(n, dim)``."""
     n, dim = velocity.shape
     chunks = chunk_count(n)
     parts = np.zeros((chunks, 3))

@@ -1,4 +1,4 @@
-"""Looks at the tables of shape functions: where they lead, and whether they sum to what they must."""
+"""Checks of the tables of shape functions: their nodes are near the particles, and their sums are right."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def near(position, inverse_cell, base, least, most):
 
 @kernel()
 def near_in_parallel(position, inverse_cell, base, least, most):
-    """As ``near``."""
+    """``near``, in parallel over chunks."""
     n = len(base)
     far = np.zeros(chunk_count(n), dtype=np.bool_)
     for c in prange(len(far)):
@@ -33,7 +33,7 @@ def near_in_parallel(position, inverse_cell, base, least, most):
 def first_untrue(weight, gradient, cell_size, close, firsts):
     """First particle whose weights along an axis do not sum to one, or gradients to zero; -1 without one.
 
-    A sum that is not a number is wrong as well. ``firsts`` is scratch, an integer a chunk.
+    A sum that is not a number is wrong too. ``firsts`` is scratch, an integer for each chunk.
     """
     n, dim, support = weight.shape
     chunks = chunk_count(n)

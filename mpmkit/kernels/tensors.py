@@ -21,36 +21,45 @@ def shear_rate(velocity_gradient: np.ndarray, floor: float = 0.0) -> np.ndarray:
 
 
 @inline()
-def shear_squared(L, p):
-    """2 D':D' of one particle, 1/s²."""
-    mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
-    xx, yy, zz = L[p, 0, 0] - mean, L[p, 1, 1] - mean, L[p, 2, 2] - mean
-    yz, xz, xy = L[p, 1, 2] + L[p, 2, 1], L[p, 0, 2] + L[p, 2, 0], L[p, 0, 1] + L[p, 1, 0]
-    return 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy
+def squares_of_shear(L, square):
+    """2 D':D' of each particle, 1/s², from the gradients of all, one after the other, in one flat array: the
+    compiler then sees that they do not overlap, and takes several at once.
+    """
+    for p in range(len(square)):
+        k = 9 * p
+        mean = (L[k] + L[k + 4] + L[k + 8]) / 3
+        xx, yy, zz = L[k] - mean, L[k + 4] - mean, L[k + 8] - mean
+        yz, xz, xy = L[k + 5] + L[k + 7], L[k + 2] + L[k + 6], L[k + 1] + L[k + 3]
+        square[p] = 2 * (xx * xx + yy * yy + zz * zz) + yz * yz + xz * xz + xy * xy
 
 
 @kernel()
 def _shear_rate(L, floor, rate):
-    n = len(L)
+    n, gradients = len(L), L.reshape(-1)
     for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            rate[p] = max(math.sqrt(shear_squared(L, p)), floor)
+        begin, end = c * CHUNK, min(n, (c + 1) * CHUNK)
+        found = rate[begin:end]
+        squares_of_shear(gradients[9 * begin : 9 * end], found)
+        for k in range(len(found)):
+            found[k] = max(math.sqrt(found[k]), floor)
 
 
 @kernel()
 def viscous_stress(L, viscosity, stress):
     """Extra stress 2 mu (D - tr(D)/3 I) into ``stress (n, 6)``."""
-    n = len(L)
+    n, gradients, stresses = len(L), L.reshape(-1), stress.reshape(-1)
     for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            mu = viscosity[p]
-            mean = (L[p, 0, 0] + L[p, 1, 1] + L[p, 2, 2]) / 3
-            stress[p, 0] = 2 * mu * (L[p, 0, 0] - mean)
-            stress[p, 1] = 2 * mu * (L[p, 1, 1] - mean)
-            stress[p, 2] = 2 * mu * (L[p, 2, 2] - mean)
-            stress[p, 3] = mu * (L[p, 1, 2] + L[p, 2, 1])
-            stress[p, 4] = mu * (L[p, 0, 2] + L[p, 2, 0])
-            stress[p, 5] = mu * (L[p, 0, 1] + L[p, 1, 0])
+        begin, end = c * CHUNK, min(n, (c + 1) * CHUNK)
+        l, s, mus = gradients[9 * begin : 9 * end], stresses[6 * begin : 6 * end], viscosity[begin:end]
+        for p in range(len(mus)):
+            k, i, mu = 9 * p, 6 * p, mus[p]
+            mean = (l[k] + l[k + 4] + l[k + 8]) / 3
+            s[i] = 2 * mu * (l[k] - mean)
+            s[i + 1] = 2 * mu * (l[k + 4] - mean)
+            s[i + 2] = 2 * mu * (l[k + 8] - mean)
+            s[i + 3] = mu * (l[k + 5] + l[k + 7])
+            s[i + 4] = mu * (l[k + 2] + l[k + 6])
+            s[i + 5] = mu * (l[k + 1] + l[k + 3])
 
 
 @kernel()

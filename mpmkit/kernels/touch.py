@@ -1,7 +1,7 @@
-"""Which nodes of the walls are touched in a step: those where material has reached the wall.
+"""Finds the nodes of the walls that are touched in a step: those where material has reached the wall.
 
-A particle has weight on the nodes of a wall when it is still up to a cell away. What stops it there stops
-it in the air: see ``solver.touch``.
+A particle has weight on the nodes of a wall already when it is still up to a cell away. If the wall acted
+then, it would stop the particle in the air: see ``solver.touch``.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from .nodes import PLANES, fold, is_wall
 from .scatter import CONTACT, PUSHED, TOUCHED
 
 REACH = 0.02
-"""Gap, in cells, between a particle's box and a wall up to which they touch."""
+"""Largest gap, in cells, between a particle's box and a wall that touch."""
 FULL = 0.9
-"""Crowding from which a node of a wall is touched, however far the boxes around it are from the wall."""
+"""Crowding from which a node of a wall is touched, for any distance of the boxes around it."""
 NOWHERE = -(1 << 30)
-"""Number of the nodes on a face that is no wall: no node has it."""
+"""Stands for the number of the nodes on a face that is not a wall; no node has this number."""
 PUSHES = TOUCHED - PUSHED
-"""The bits of all axes."""
+"""The ``PUSHED`` bits of all axes."""
 TOUCHES = PUSHES * TOUCHED
 
 
@@ -33,11 +33,11 @@ def mark(dim: int, support: int):
     velocity, half_size, volume, room, cell_size, begins)`` marks a node for an axis if the box of a
     particle with weight on the node reaches the wall across that axis, or if the node is full: Σ V_p N_np >
     ``FULL`` V_n. Where material has not reached the wall, it is not pushed either. When a run ``begins``,
-    what rests on a wall is taken to be pushed by it.
+    material at rest on a wall is assumed to be pushed by it.
 
-    ``walls[a, side]`` is the number of the nodes on a face, ``NOWHERE`` if that is no wall. ``room`` is V_n
-    of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes, 2)``, for Σ
-    V_p N_np and for bits; it must be zero, and is zero afterwards.
+    ``walls[a, side]`` is the number of the nodes on a face, or ``NOWHERE`` if the face is not a wall.
+    ``room`` is V_n of the nodes of the walls, one for each row of ``mirrors``. ``sums`` is scratch, ``(nodes,
+    2)``, for Σ V_p N_np and for bits; it must be zero before, and is zero afterwards.
     """
     planes = support if dim == 3 else 1
 
@@ -50,7 +50,7 @@ def mark(dim: int, support: int):
         V = volume[p] * weight[p, a, k]
         if V == 0.0:
             return
-        half = min(half_size[p, a], 0.5 * cell_size)  # as much of the box as the weights know of
+        half = min(half_size[p, a], 0.5 * cell_size)  # the part of the box that the weights see
         bits = 0
         if abs(position[p, a] - wall * cell_size) - half <= REACH * cell_size:
             bits = TOUCHED << a
@@ -68,7 +68,7 @@ def mark(dim: int, support: int):
                     w *= weight[p, c, j]
                     at += j * strides[c]
                     counts &= c > a or not _on(walls, c, base[p, c] + j)
-                if counts:  # what lies on two walls is met twice
+                if counts:  # a node on two walls is visited twice, and must count once
                     sums[at, 0] += w
                 if bits and w != 0.0 and int(sums[at, 1]) & bits != bits:
                     sums[at, 1] = int(sums[at, 1]) | bits
@@ -100,13 +100,13 @@ def mark(dim: int, support: int):
 
 @inline()
 def _on(walls, a, number):
-    """Whether nodes of that number along an axis lie on one of its walls."""
+    """Whether nodes with this number along an axis lie on one of its walls."""
     return number == walls[a, 0] or number == walls[a, 1]
 
 
 @function()
 def _settle(nodes, sums, faces, mirrors, plane_first, room):
-    """Full nodes are touched, and a ghost and its image alike; where nothing touches, nothing is pushed."""
+    """Full nodes are touched; a ghost and its image have the same bits; an untouched node is not pushed."""
     dim = len(faces)
     fold(sums, faces, mirrors, plane_first, 0, 1, False)
     for a in range(dim):

@@ -1,8 +1,8 @@
-"""Eight doubles at once: a node's record is one vector, and so is what a particle adds to it.
+"""Vectors of eight doubles: a node's record is one vector, and so is what a particle adds to it.
 
-numba leaves a loop over eight slots to the compiler, which keeps them apart as scalars. These few functions
-say it in so many words; LLVM turns them into the widest instructions that the machine has. They work inside
-kernels only; where compilation is switched off, NumPy arrays stand in.
+The compiler would treat a loop over the eight slots of a record as scalar operations. With these functions it
+gets vector operations, and LLVM turns them into the widest instructions of the machine. They work only inside
+kernels; if compilation is switched off, NumPy arrays replace them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _vector = Vector()
 
 
 def _pointer(context, builder, signature, arguments, kind=_VECTOR):
-    """Address of ``array.flat[i]`` of a contiguous array, as that of a vector."""
+    """Address of ``array.flat[i]`` of a contiguous array, as a pointer to a vector."""
     array, i = signature.args[:2]
     data = context.make_array(array)(context, builder, arguments[0]).data
     index = context.cast(builder, arguments[1], i, types.intp)
@@ -46,7 +46,7 @@ def _pointer(context, builder, signature, arguments, kind=_VECTOR):
 
 
 def _mask(lanes):
-    """Constant of the lanes of a shuffle."""
+    """Constant vector of lane numbers, for a shuffle."""
     return ir.Constant(ir.VectorType(_INT, len(lanes)), list(lanes))
 
 
@@ -57,10 +57,10 @@ def _spread(builder, scalar):
 
 
 def multiply_add(builder, a, b, c):
-    """a b + c of numbers or vectors, as one instruction where the machine has it.
+    """a b + c of numbers or vectors, as one instruction if the machine has it.
 
-    It is asked for by name, and not left to the compiler's freedom to contract: of a kernel there are two
-    versions, one that has just been compiled and one that was kept, and what it contracts differs in them.
+    It is called by name. If the compiler were free to contract a b + c, it could do so differently in newly
+    compiled code and in code from the cache, and the results would differ in their last bits.
     """
     name = "llvm.fmuladd.v8f64" if a.type == _VECTOR else "llvm.fmuladd.f64"
     kind = ir.FunctionType(a.type, [a.type] * 3)
@@ -69,7 +69,7 @@ def multiply_add(builder, a, b, c):
 
 @intrinsic
 def load(typing, array, i):
-    """Eight doubles of a contiguous array from its flat index i on. Nobody checks that they are there."""
+    """Eight doubles of a contiguous array from its flat index i on. The bounds are not checked."""
 
     def generate(context, builder, signature, arguments):
         return builder.load(_pointer(context, builder, signature, arguments), align=8)
@@ -79,8 +79,8 @@ def load(typing, array, i):
 
 @intrinsic(prefer_literal=True)
 def load_first(typing, array, i, count):
-    """The first ``count`` doubles of a vector, and zeros; no more than these are read. ``count`` must be
-    written as a number.
+    """``count`` doubles of a contiguous array from its flat index i on, and zeros; no more are read.
+    ``count`` must be a literal number.
     """
     number = count.literal_value
 
@@ -117,6 +117,18 @@ def store(typing, array, i, vector):
 
 
 @intrinsic
+def store_half(typing, array, i, vector):
+    """Write the first four doubles of a vector to a contiguous array, from its flat index i on."""
+
+    def generate(context, builder, signature, arguments):
+        half = builder.shuffle_vector(arguments[2], arguments[2], _mask(range(LANES // 2)))
+        builder.store(half, _pointer(context, builder, signature, arguments, _HALF), align=8)
+        return context.get_dummy_value()
+
+    return types.none(array, i, vector), generate
+
+
+@intrinsic
 def zero(typing):
     """A vector of zeros."""
 
@@ -138,7 +150,7 @@ def scale(typing, factor, vector):
 
 @intrinsic
 def plus(typing, total, factor, vector):
-    """total + factor × vector, rounded once where the machine can."""
+    """total + factor × vector, rounded only once if the machine can do this."""
 
     def generate(context, builder, signature, arguments):
         return multiply_add(builder, _spread(builder, arguments[1]), arguments[2], arguments[0])
@@ -158,7 +170,7 @@ def multiply(typing, a, b):
 
 @intrinsic
 def plus_product(typing, total, a, b):
-    """total + a b, lane by lane, rounded once where the machine can."""
+    """total + a b, lane by lane, rounded only once if the machine can do this."""
 
     def generate(context, builder, signature, arguments):
         return multiply_add(builder, arguments[1], arguments[2], arguments[0])
@@ -168,7 +180,7 @@ def plus_product(typing, total, a, b):
 
 @intrinsic
 def spread(typing, factor):
-    """A vector of eight times the same scalar."""
+    """A vector with the same scalar in all eight lanes."""
 
     def generate(context, builder, signature, arguments):
         return _spread(builder, arguments[0])
@@ -185,7 +197,7 @@ def picker(*lanes):
 
         return _vector(a, b), generate
 
-    pick.__qualname__ = f"picker{lanes}"  # two of them are not the same code
+    pick.__qualname__ = f"picker{lanes}"  # a name of its own: the code of two pickers differs
     return intrinsic(pick)
 
 
@@ -204,7 +216,7 @@ def pack(typing, a, b, c, d, e, f, g, h):
 
 @intrinsic(prefer_literal=True)
 def lane(typing, vector, k):
-    """Scalar k of a vector; k must be written as a number."""
+    """Scalar k of a vector; k must be a literal number."""
     number = k.literal_value
 
     def generate(context, builder, signature, arguments):
@@ -227,6 +239,10 @@ if numba.config.DISABLE_JIT:
 
     def store(array, i, vector):
         there = array.reshape(-1)[i : i + LANES]
+        there[:] = vector[: len(there)]
+
+    def store_half(array, i, vector):
+        there = array.reshape(-1)[i : i + LANES // 2]
         there[:] = vector[: len(there)]
 
     def zero():

@@ -8,7 +8,7 @@ from numba import prange
 from .compile import CHUNK, chunk_count, kernel
 
 FEW = 20_000
-"""Particles up to which a copy takes less than the start of several threads."""
+"""Up to this number of particles a copy takes less time than the start of several threads."""
 
 
 @kernel()
@@ -21,8 +21,30 @@ def stretch(rate, dt, initial_volume, volume_ratio, volume):
             volume[p] = initial_volume[p] * volume_ratio[p]
 
 
+@kernel()
+def stretch_and_expand(rate, dt, expansion, shear, pressure, initial_volume, volume_ratio, volume, energy):
+    """As ``stretch``, with the factor 1 + e Δγ of J for the expansion e = d ln J/dγ and the shear Δγ.
+
+    Args:
+        expansion: ``(n,)``, d ln J/dγ, 1.
+        shear: Δγ of the step, 1.
+        pressure: ``(n,)``, Pa, at the volume ratio before the step.
+        energy: J, an entry a chunk: -Σ p V0 ΔJ, the energy stored by the expansion (out).
+    """
+    n = len(rate)
+    for c in prange(chunk_count(n)):
+        stored = 0.0
+        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
+            strained = volume_ratio[p] * (1 + dt * rate[p])
+            change = strained * expansion[p] * shear
+            stored -= pressure[p] * initial_volume[p] * change
+            volume_ratio[p] = strained + change
+            volume[p] = initial_volume[p] * volume_ratio[p]
+        energy[c] = stored
+
+
 def assign(field: np.ndarray, values: np.ndarray) -> None:
-    """``field[:] = values``, ``(n,)``, by all threads where that is worth it.
+    """``field[:] = values``, ``(n,)``, with all threads if that is faster.
 
     Raises:
         ValueError: the values have another shape.

@@ -1,14 +1,14 @@
-"""What a wall that may stand anywhere does to the nodes at it.
+"""The action of a wall, at any place and angle, on the nodes at it.
 
 The velocity of the material at the wall is that of the line through a node and its image,
 
     v_wall = a v_node + b v_image,   a = 1 + d,  b = -d,
 
-with the signed distance d of the node, in cells. What the wall does is an impulse λ at that place. The nodes
-share it by the same weights C: of all changes that give the velocity at the wall its due, C λ / m of each has
-the least energy. A wall that lies on nodes has a = 1 and b = 0, and acts on these nodes alone.
+with the signed distance d of the node, in cells. The wall gives an impulse λ at that place. The nodes share
+it with the same weights C: the change C λ / m of each node has the least energy of all changes that give the
+required velocity at the wall. A wall that lies on nodes has a = 1 and b = 0, and acts only on these nodes.
 
-What was tried otherwise, and what it gave, is in docs/findings.md.
+docs/findings.md has the alternatives that were tried, with their results.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ from .nodes import RELEASING_STICK, STICK, holds
 from .scatter import CONTACT
 
 HELD, NONE = 0.1, 1e-9
-"""Part of Σ C² / m that is counted at least, and below which nothing is free."""
+"""Parts of Σ C² / m: the smallest that counts, and the one below which no axis is free."""
 
 
 @function()
 def find_free_axes(nodes, at, faces, dim, free):
-    """Bits of the axes along which no face of the grid holds a node, into ``free`` (nodes,), of nodes ``at``.
+    """Write to ``free`` (nodes,), for the nodes ``at``, the bits of the axes along which no face
+    of the grid holds them.
 
     ``faces`` (nodes, dim) has the code of the face across each axis on which a node lies.
     """
@@ -43,19 +44,19 @@ def find_free_axes(nodes, at, faces, dim, free):
 def at_wall_velocities(
     nodes, at_wall, at, distance, normal, index, weight, free, acting, share, stiffness, velocity, inner
 ):
-    """Velocity of the material at a wall, and how easily it is changed there.
+    """Velocity of the material at a wall, and its compliance there.
 
     Args:
         free: (k,) bits of the axes along which no face of the grid holds the node.
         acting: (k,) which nodes have mass (out).
         share: (k, 1 + 2^dim) weights C of the node and of those around its image (out).
-        stiffness: (k, dim) Σ C² / m along each axis, 1/kg, of what no face holds, but at least ``HELD`` times
-            that of all: what has a small part in the velocity at the wall must not be thrown about so that
-            the sum comes right where a face holds the rest (out).
+        stiffness: (k, dim) compliance Σ C² / m along each axis, 1/kg, over the nodes that no face holds, but
+            at least ``HELD`` times the sum over all nodes (out). Without this limit, a free node with a small
+            weight would get a very large velocity where a face holds the other nodes.
         velocity, inner: (k, dim) at the wall and at the image (out).
 
     Returns:
-        How many have mass.
+        The number of nodes that have mass.
     """
     dim = normal.shape[1]
     corners = index.shape[1]
@@ -66,7 +67,7 @@ def at_wall_velocities(
         if not nodes[g, 0] > 0.0:
             continue
         total = 0.0
-        for c in range(corners):  # no weight is above 0 where there is no image
+        for c in range(corners):  # without an image, no weight is above 0
             if weight[k, c] > 0.0 and nodes[index[k, c], 0] > 0.0:
                 total += weight[k, c]
         d = distance[k]
@@ -107,7 +108,7 @@ def at_wall_velocities(
 
 @function()
 def _give(nodes, g, index, share, free, dim, impulse, solved):
-    """An impulse at the wall, shared among the nodes."""
+    """Share an impulse at the wall among the nodes."""
     for c in range(len(share)):
         if share[c] != 0.0:
             i = g if c == 0 else index[c - 1]
@@ -134,8 +135,8 @@ def give(nodes, acting, at, normal, index, free, share, stiffness, before, after
     """Give the nodes the impulses that change the velocities at the wall from ``before`` to ``after``.
 
     Args:
-        impulse: (k, dim), N s, what is given (out).
-        held: (k,) whether the velocity is to change at all there (out), uint8.
+        impulse: (k, dim), N s, the impulses (out).
+        held: (k,) whether the velocity must change there (out), uint8.
     """
     dim = normal.shape[1]
     for j in range(len(acting)):
@@ -160,13 +161,14 @@ def sweep(
     nodes, acting, at, normal, index, free, share, stiffness, after, whole, pulls, backwards, solved, impulse,
     held,
 ):  # fmt: skip
-    """Bring what the wall holds to the velocities ``after`` once more, one place after the other.
+    """Correct the velocities of the places that the wall holds to ``after`` again, one place after the other.
 
-    Nodes have neighbours in common, and those of another wall, so that one impulse disturbs the next. What is
-    put right is the normal part or, with ``whole``, all of it. Without ``pulls`` no impulse may come to pull.
-    Sweeps go to and fro: each place is a projection in the metric of the masses, and their product has the
-    same transpose only if it reads the same from both ends. One that has not turns stress into motion that
-    does not give it back, and what sticks in a corner of two walls flutters, ever faster with FLIP.
+    The places share nodes with each other and with those of other walls, so that each impulse changes the
+    velocity of its neighbours. The normal part is corrected or, with ``whole``, the whole vector. Without
+    ``pulls``, no sum of impulses may become a pull. Sweeps go forwards and backwards in turn. Each correction
+    is a projection in the metric of the masses, and the product of the corrections is its own transpose only
+    if their order is symmetric. Otherwise the work of the stress is not recovered, and material that sticks
+    in a corner of two walls oscillates with growing amplitude under FLIP.
     """
     dim = normal.shape[1]
     count = len(acting)
@@ -198,10 +200,10 @@ def sweep(
 
 @function()
 def add_up(impulse, nodes, place, distance, normal, wall_velocity, sums):
-    """Add impulses (n, dim), N s, of some ``nodes`` to the sums of a wall: itself, its moment, its work.
+    """Add the impulses (n, dim), N s, at some ``nodes``, their moments and their work to the sums of a wall.
 
-    The moment is about the origin of the scene, N m s: x × λ in 3-D, and its part out of the plane, about
-    the axis y, in two dimensions. The work is λ·w, J.
+    The moment is about the origin of the scene, N m s: x × λ in 3-D, and its component out of the plane,
+    about the axis y, in two dimensions. The work is λ·w, J.
     """
     dim = impulse.shape[1]
     turns = len(sums) - dim - 1
@@ -222,7 +224,7 @@ def add_up(impulse, nodes, place, distance, normal, wall_velocity, sums):
 
 @function()
 def _holder(faces, contact, e):
-    """The axis across which a face holds a node along axis e: that axis, or one whose face it sticks to."""
+    """The axis whose face holds a node along axis e: e itself, or that of a face to which the node sticks."""
     if not holds(faces[e], contact, e):
         for a in range(len(faces)):
             if faces[a] in (STICK, RELEASING_STICK) and holds(faces[a], contact, a):
@@ -232,12 +234,13 @@ def _holder(faces, contact, e):
 
 @function()
 def add_up_held(impulse, nodes, acting, at, index, share, free, faces, sides, places, of_faces):
-    """Add what the faces give at nodes that they hold against a wall: the shares that these do not take.
+    """Add the impulses of faces that hold nodes against a wall: the shares of the wall that these nodes do
+    not take.
 
     Args:
         impulse: (n, dim) of the wall at the ``acting`` nodes, N s.
         faces, sides: (nodes, dim) code of the face across each axis on which a node lies, and its side.
-        places: (nodes, dim) m.
+        places: (nodes, dim) positions of the nodes, m.
         of_faces: (2 dim, ...) sums of the faces, see ``face_impulses``.
     """
     dim = impulse.shape[1]

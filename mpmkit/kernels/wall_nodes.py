@@ -1,9 +1,9 @@
-"""The nodes of a wall that may stand anywhere: those at it, the ghosts behind it, and their images.
+"""The nodes of a wall at any place and angle: those at it, the ghosts behind it, and their images.
 
-A node is *at* a wall if it is within half a cell of it, to either side: there is one for each cell of wall,
-however the wall lies. Its image is one cell further in along the normal. A *ghost* is a node more than half a
-cell behind the wall. Its image is at the same distance in front of the wall. What an image has is
-interpolated from the nodes around it.
+A node is *at* a wall if it is within half a cell of it, on either side: about one node for each cell of wall,
+at any angle. Its image is one cell further inside along the normal. A *ghost* is a node more than half a cell
+behind the wall. Its image is at the same distance in front of the wall. Values at an image are interpolated
+from the nodes around it.
 """
 
 from __future__ import annotations
@@ -15,16 +15,17 @@ from .compile import function
 FAR = 1e300
 """Distance of nodes that are not near a wall."""
 AT, GHOST = 0.5, 2.0
-"""Cells from a wall within which a node is at it, and behind it within which it can be a ghost."""
+"""Largest distance of a node at a wall, and largest depth of a ghost behind it, in cells."""
 LEAST, NONE = 0.1, -1.0
-"""Least weight that the nodes around an image must have; what stands as the first where they have less."""
+"""Smallest sum of the weights around an image; the first weight is set to ``NONE`` if the sum is smaller."""
 
 
 @function()
 def _corners(place, lower, shape, strides, active, taken, index, weight):
-    """Nodes around a place, in cells from the grid's corner, and their weights, which add up to one.
+    """Nodes around a place, given in cells from the grid's corner, and their weights, whose sum is one.
 
-    Nodes that no particle can reach, and those in ``taken``, have none. Whether any is left.
+    Nodes that no particle can reach, and those in ``taken``, have no weight. Returns whether enough nodes are
+    left.
     """
     dim = len(place)
     total = 0.0
@@ -57,22 +58,22 @@ def find_nodes(
     at, number, distance, normal, lower, shape, strides, active, inside, taken, at_wall, ghost, index, weight,
     foot, foot_weight,
 ):  # fmt: skip
-    """Sort the nodes near a wall into those at it and ghosts, with the nodes around the image of each.
+    """Divide the nodes near a wall into those at it and ghosts; find the nodes around the image of each.
 
     Args:
-        at: (k,) the nodes, by their place in the window.
+        at: (k,) indices of the nodes in the window.
         number: (k, dim) their numbers along the axes.
         distance, normal: (k,) in cells and (k, dim).
         lower, shape, strides: of the window.
         active: (nodes,) whether particles can reach a node.
-        inside: (nodes,) the same, but for nodes behind a face of the grid, which are those of its mirror.
+        inside: (nodes,) the same, without the nodes behind a face of the grid, which belong to its mirror.
         taken: (nodes,) scratch, all false: becomes true at ghosts.
         at_wall, ghost: (k,) which of the k are at the wall, and which are ghosts (out).
         index, weight: (k, 2^dim) of the image of each (out).
         foot, foot_weight: (k, 2^dim) nodes at the wall around the foot of each ghost (out).
 
     Returns:
-        How many are at the wall, and how many are ghosts.
+        The number of nodes at the wall, and the number of ghosts.
     """
     dim = number.shape[1]
     count = ghosts = 0
@@ -116,7 +117,7 @@ def find_nodes(
 def find_images(
     at, number, distance, normal, lower, shape, strides, active, inside, taken, behind, index, weight
 ):
-    """Nodes behind a wall, and the nodes around the image of each: for averages of scalars."""
+    """Find the nodes behind a wall, and the nodes around the image of each, for averages of scalars."""
     dim = number.shape[1]
     count = 0
     place = np.empty(dim)

@@ -1,4 +1,4 @@
-"""Particles at a wall that may stand anywhere: how far away they are, and which nodes they make it touch."""
+"""Particles near a wall at any place and angle: their distance, and the nodes at which they touch it."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy as np
 from .compile import function, inline
 
 NEAR = 2.8
-"""Cells from a wall within which a node of a particle's cell is, if the particle's box may reach the wall."""
+"""If the box of a particle can reach a wall, the nodes of its cell are within this many cells of the wall."""
 TOUCH = 0.02
-"""Cells from a wall within which a box touches it."""
+"""Largest gap, in cells, between a box and a wall that touch."""
 
 
 @function()
 def _distance(x, inverse, lower, strides, distance, slope):
-    """Distance of a place near the wall, in cells, between the nodes of its cell, and its slopes (out)."""
+    """Distance of a place from the wall, in cells, interpolated in its cell, and its slopes (out)."""
     dim = len(x)
     first = 0
     for a in range(dim):
@@ -49,7 +49,7 @@ def _is_near(position, p, inverse, lower, strides, distance):
 
 @function()
 def keep_out(position, cell_size, lower, strides, distance):
-    """Put particles that have come into the wall back to its surface, along the normal; how many."""
+    """Move particles that have entered the wall back to its surface along the normal; return their number."""
     inverse, count = 1 / cell_size, 0
     slope = np.empty(position.shape[1])
     for p in range(len(position)):
@@ -58,7 +58,7 @@ def keep_out(position, cell_size, lower, strides, distance):
         d = _distance(position[p], inverse, lower, strides, distance, slope)
         if d < 0.0:
             square = (slope * slope).sum()
-            if square > 0.25:  # in the middle of a thin wall no side is nearer
+            if square > 0.25:  # in the middle of a thin wall neither side is nearer
                 for a in range(len(slope)):
                     position[p, a] -= d * slope[a] / square * cell_size
                 count += 1
@@ -67,10 +67,11 @@ def keep_out(position, cell_size, lower, strides, distance):
 
 @function()
 def mark_touched(position, half_size, inverse, base, weight, lower, strides, distance, touched):
-    """Mark the nodes on which a particle has weight whose box reaches the wall; how many particles do.
+    """Mark the nodes of the particles whose boxes reach the wall; return the number of these particles.
 
     Args:
-        distance: (nodes,) of the window, in cells; ``FAR`` away from the wall.
+        distance: (nodes,) distance of the nodes of the window, in cells; ``FAR`` if they are not near the
+            wall.
         touched: (nodes,) uint8 (out).
     """
     n, dim = position.shape

@@ -165,40 +165,35 @@ def _cells(case: Case) -> Iterator[tuple[str, str, Changes]]:
 
 def _sounds(case: Case) -> Iterator[tuple[str, str, Changes]]:
     fluids = {
-        index: case.sound_speed(body.material)
-        for index, body in enumerate(case.bodies)
-        if body.material.constitutive_law.uses_equation_of_state
+        path: case.sound_speed(material)
+        for path, material in case.materials.items()
+        if material.constitutive_law.uses_equation_of_state
     }
     falls = math.sqrt(2 * case.largest_energy)
-    if falls == 0 or any(
-        law.needs_deformation_gradient for law in (b.material.constitutive_law for b in case.bodies)
-    ):
+    laws = (material.constitutive_law for material in case.materials.values())
+    if falls == 0 or any(law.needs_deformation_gradient for law in laws):
         return
     of_height = FACTOR * math.sqrt(2 * math.hypot(*case.gravity_vector) * case.height)
-    faster = {
-        index: speed for index, speed in fluids.items() if speed is not None and speed > 1.05 * of_height
-    }
+    faster = [path for path, speed in fluids.items() if speed is not None and speed > 1.05 * of_height]
     if faster and falls <= of_height / FACTOR:
-        changes = {f"bodies.{index}.material.sound_speed": {"factor": FACTOR} for index in faster}
+        changes = {f"{path}.sound_speed": {"factor": FACTOR} for path in faster}
         yield f"c = {FACTOR:g} √(2 g h)", "at a Mach number of at most 0.1", changes
-    followed = [
-        b.material.sound_speed for b in case.bodies if getattr(b.material.sound_speed, "mach", 0) >= MACH
-    ]
+    followed = [m for m in case.materials.values() if getattr(m.sound_speed, "mach", 0) >= MACH]
     if fluids and not followed:
-        changes = {f"bodies.{index}.material.sound_speed": {"mach": MACH} for index in fluids}
+        changes = {f"{path}.sound_speed": {"mach": MACH} for path in fluids}
         yield f"Mach {MACH:g}", "the sound speed follows the flow, and the steps grow as it slows", changes
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, Changes]]:
     registry = installed()
     changes: Changes = {}
-    for index, body in enumerate(case.bodies):
-        exact = body.material.constitutive_law.exact_form
+    for path, material in case.materials.items():
+        exact = material.constitutive_law.exact_form
         if exact is not None and issubclass(
             registry.of_kind("law").get(exact, object), ElastoviscoplasticLaw
         ):
-            given = body.material.model_dump(mode="json", exclude_unset=True)
-            changes[f"bodies.{index}.material"] = with_law(given, exact, registry)[0]
+            given = material.model_dump(mode="json", exclude_unset=True)
+            changes[path] = with_law(given, exact, registry)[0]
     if changes:
         if "viscous" in case.scheme.time_step.ignore:
             changes["scheme.time_step.ignore"] = [x for x in case.scheme.time_step.ignore if x != "viscous"]

@@ -15,7 +15,7 @@ from ..solver.memory import checkpoint_bytes, expected_bytes, require_memory
 from ..solver.simulation import Simulation
 from .cheaper import cheaper_models
 from .expectation import expected_error
-from .pilot import Growth, pilot
+from .pilot import Growth, counted, pilot
 from .trial import Trial, trial
 
 PILOT_SECONDS = 10.0
@@ -92,7 +92,12 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
     start = trial(simulation)
     growth = _growth(simulation, case.end / step * start.step)
     steps = math.ceil(case.end / step * growth.steps)
-    at_end = round(particles * growth.last_particles)
+    mean = (
+        _mean_seconds_of_sources(start, counted(simulation), growth)
+        if case.sources
+        else _mean_seconds(start, particles, growth, case.end / steps)
+    )
+    at_end = round(counted(simulation) * growth.last_particles)
     return {
         "particles": particles,
         "particles_at_end": at_end,
@@ -104,7 +109,7 @@ def _cost_of(simulation: Simulation) -> dict[str, Any]:
         "sound_speed": [case.sound_speed(material) for material in case.materials.values()],
         "memory_bytes": expected_bytes(case, at_end),
         "checkpoint_bytes": checkpoint_bytes(case, at_end),
-        "expected_seconds": steps * _mean_seconds(start, particles, growth, case.end / steps),
+        "expected_seconds": steps * mean,
         "remarks": [*case.grid.extensions, *remarks],
         "warnings": warnings + start.stopped,
     }
@@ -115,10 +120,21 @@ def _growth(simulation: Simulation, seconds: float) -> Growth:
     case = simulation.case
     follows = any(group.mach is not None for group in simulation.particles.groups)
     found = None
-    if (case.scheme.splitting or follows or case.walls) and seconds > WORTH_A_PILOT:
+    if case.sources:  # the first steps, with few particles, say little
+        found = pilot(case, PILOT_SECONDS)
+    elif (case.scheme.splitting or follows or case.walls) and seconds > WORTH_A_PILOT:
         # Growth makes the run longer than this estimate, and the pilot should reach the end of the flow.
         found = pilot(case, min(PILOT_SECONDS, 2 * seconds))
     return found or Growth.unknown()
+
+
+def _mean_seconds_of_sources(start: Trial, particles: float, growth: Growth) -> float:
+    """Mean seconds per step of a run that begins with few particles: those of the pilot, and of the particles
+    that it has more; without a pilot, which cannot be had if it diverges, those of the trial."""
+    if growth.of_the_case or not growth.mean_particles > 0:
+        return growth.seconds_per_step if growth.of_the_case else start.step
+    more = particles * growth.particles - growth.mean_particles
+    return growth.seconds_per_step + growth.seconds_per_particle * more
 
 
 def _mean_seconds(start: Trial, particles: int, growth: Growth, time_step: float) -> float:

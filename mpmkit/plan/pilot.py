@@ -13,6 +13,8 @@ import time as clock
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..case import parse_case
 from ..case.model import Case
 from ..case.plugins import plugins_of
@@ -27,13 +29,15 @@ from .wall_load import load
 
 FEW = {2: 250, 3: 1500}
 """Approximate largest number of particles of a pilot, by the number of dimensions."""
+GROUPS = 10
+"""Groups of steps, by their number of particles, through whose medians a line is drawn."""
 COARSEST = 3.0
 """Least height of the scene in cells; with fewer cells, the flow is not realistic."""
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Results of a pilot, relative to its initial state."""
+    """Results of a pilot, relative to its first step and to the particles that are ``counted``."""
 
     steps: float
     """steps done over those that the first step's length would need"""
@@ -42,6 +46,8 @@ class Growth:
     last_particles: float
     """particles at the end"""
     seconds_per_step: float
+    seconds_per_particle: float
+    """by how much a step is longer for one more particle, by a line through the steps of the pilot"""
     mean_particles: float
     """number of particles, the mean over the steps"""
     seconds_of_parts: float
@@ -57,7 +63,7 @@ class Growth:
     def unknown(cls) -> Growth:
         """No growth; used without a pilot."""
         nan = math.nan
-        return cls(1.0, 1.0, 1.0, nan, nan, nan, nan, nan, of_the_case=False)
+        return cls(1.0, 1.0, 1.0, nan, nan, nan, nan, nan, nan, of_the_case=False)
 
 
 def pilot(case: Case, seconds: float) -> Growth | None:
@@ -76,14 +82,18 @@ def pilot(case: Case, seconds: float) -> Growth | None:
         raise
     except MpmkitError:
         return None
-    first_step, first = simulation.time_step, len(simulation.particles)
+    first_step, first = simulation.time_step, float(len(simulation.particles))
     begin, before = clock.perf_counter(), simulation.particle_steps
     start_steps, start_time = simulation.steps, simulation.time
     parts = PartClock(simulation)
     wider, walls = coarse.grid.cell_size / case.grid.cell_size, 0.0
+    numbers, taken_by_each = [], []
     try:
         while simulation.time < coarse.end and clock.perf_counter() - begin < seconds:
+            start = clock.perf_counter()
             simulation.advance(coarse.end - simulation.time)
+            taken_by_each.append(clock.perf_counter() - start)
+            numbers.append(len(simulation.particles))
             walls += load(simulation, wider)
     except PluginStop:
         raise
@@ -94,18 +104,36 @@ def pilot(case: Case, seconds: float) -> Growth | None:
     steps = simulation.steps - start_steps
     if steps == 0:
         return None
+    if case.sources:  # in comparison with all that has come in, also where the time was too short
+        first = max(1.0, expected_particles(coarse, simulation.time))
     mean, passed = (simulation.particle_steps - before) / steps, simulation.time - start_time
     return Growth(
         steps=steps / (passed / first_step),
         particles=mean / first,
         last_particles=len(simulation.particles) / first,
         seconds_per_step=taken / steps,
+        seconds_per_particle=_slope(np.array(numbers), np.array(taken_by_each)),
         mean_particles=mean,
         seconds_of_parts=parts.seconds / steps,
         walls=walls / steps,
         redistributions=parts.redistributions / passed,
         of_the_case=coarse is case,
     )
+
+
+def _slope(numbers: np.ndarray, seconds: np.ndarray) -> float:
+    """Seconds per particle, at least 0 and at most the mean ratio, by a line through medians of groups."""
+    parts = np.array_split(np.argsort(numbers, kind="stable"), min(GROUPS, len(numbers)))
+    x = np.array([numbers[part].mean() for part in parts])
+    y = np.array([np.median(seconds[part]) for part in parts])
+    off = x - x.mean()
+    slope = float(off @ y / (off @ off)) if (off != 0).any() else 0.0
+    return min(max(slope, 0.0), float(y.mean() / max(x.mean(), 1.0)))
+
+
+def counted(simulation: Simulation) -> float:
+    """Particles at the start; of a scene with sources, those that there will have been at its end."""
+    return expected_particles(simulation.case) if simulation.case.sources else len(simulation.particles)
 
 
 def coarser(case: Case) -> Case:

@@ -76,7 +76,7 @@ def trial(simulation: Simulation) -> Trial:
 def _redistributing(simulation: Simulation, parts: PartClock) -> float:
     """Seconds of a redistribution, made only to measure it: in the trial it may not have been due."""
     operations, before = simulation.operations, 0.0
-    if not operations.stage.acts:
+    if not operations.stage.acts or not len(simulation.particles):
         return 0.0
     with simulation.blaming:
         for _ in range(FORCED):

@@ -1,4 +1,4 @@
-"""The plug-ins of this environment: how they are found, what they must be, and whose fault an error is."""
+"""The plug-ins of this environment: how they are found and checked, and which one caused an error."""
 
 from .discovery import discover, installed
 from .registered import Problem, Registered, Registry

@@ -69,7 +69,7 @@ def named(plugin: object) -> str:
     if kind is None:
         return f"the plug-in '{name}'"
     origin = installed().plugins[kind].get(name)
-    of = f", of {origin.distribution}" if origin is not None and origin.plugin is cls else ""
+    of = f", of {origin.distribution}" if origin is not None and issubclass(cls, origin.plugin) else ""
     return f"the plug-in '{name}' ({kind.replace('_', ' ')}{of})"
 
 

@@ -1,4 +1,4 @@
-"""A new plug-in's distribution, written from ``templates/``."""
+"""Writes the distribution of a new plug-in from ``templates/``."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ KINDS = {
     "redistribution": "redistribution",
     "refinement": "refinement",
     "equation_of_state": "equation of state",
+    "body_shape": "body shape",
     "surface": "surface",
     "contact": "contact",
     "body_force": "body force",
@@ -35,23 +36,24 @@ KINDS = {
     "diagnostic": "diagnostic",
     "particle_field": "particle field",
 }
-"""Kinds of plug-ins that there are templates for, and what they are called."""
+"""Kinds of plug-ins that have a template, and their names in words."""
 PREFIX = "mpmkit-"
 NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 LONGEST_NAME = 50
 
 
 def new_plugin(name: str, kind: str, directory: Path | None = None) -> Path:
-    """Write a distribution that registers a plug-in, with tests that it passes, and return its directory.
+    """Write a distribution that registers a plug-in, with tests that pass, and return its directory.
 
     Args:
-        name: what a case file will say; ``mpmkit-`` before it is taken as the distribution's.
+        name: name of the plug-in in case files; a leading ``mpmkit-`` is removed, because the distribution's
+            name adds it.
         kind: one of ``KINDS``.
-        directory: to be made; default: ``mpmkit-NAME``.
+        directory: the new directory; default: ``mpmkit-NAME``.
 
     Raises:
-        CaseError: the name cannot be one, or is taken, or the directory exists.
-        OutputError: it cannot be written. Nothing is left behind.
+        CaseError: the name is not allowed, or is in use, or the directory exists.
+        OutputError: the files cannot be written; then none is left behind.
     """
     plugin = name.removeprefix(PREFIX)
     words = _words(name, plugin)
@@ -65,7 +67,7 @@ def new_plugin(name: str, kind: str, directory: Path | None = None) -> Path:
 
 
 def _words(name: str, plugin: str) -> dict[str, str]:
-    """What the templates leave open, by the name of the plug-in."""
+    """Values of the placeholders of the templates, from the name of the plug-in."""
     class_name = "".join(part.capitalize() for part in plugin.split("-"))
     if not NAME.fullmatch(plugin) or len(plugin) > LONGEST_NAME or keyword.iskeyword(class_name):
         raise CaseError(
@@ -98,7 +100,7 @@ def _refuse_taken(kind: str, plugin: str, module: str) -> None:
 
 
 def _plan(kind: str, words: dict[str, str]) -> dict[str, str]:
-    """Files of the distribution, and the templates that they are made from."""
+    """Files of the distribution, each with its template."""
     return {
         "pyproject.toml": "pyproject.toml",
         "README.md": "README.md",
@@ -114,7 +116,7 @@ def _filled(template: str, words: dict[str, str]) -> str:
 
 
 def _write(directory: Path, contents: dict[str, str]) -> None:
-    """All files or none: they are written beside the directory, which then takes its name."""
+    """Write all files or none: they are written to a temporary directory, which is then renamed."""
     partial = None
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)

@@ -13,7 +13,7 @@ FIFTY = 50
 
 
 def progress_bar(name: str = "run") -> Listener:
-    """A listener for ``mpmkit.run`` that shows how far a run is, in a notebook or on a terminal.
+    """A listener for ``mpmkit.run`` that shows the progress of a run, in a notebook or on a terminal.
 
     >>> mpmkit.run(case, listen=mpmkit.progress_bar())
 

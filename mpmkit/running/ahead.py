@@ -1,7 +1,8 @@
-"""Which compiled functions a case will need: those that the most similar of some recorded cases needed.
+"""Predicts the compiled functions that a case will need: those of the most similar recorded case.
 
-``needed_kernels.json`` is made by ``benchmarks/needed_kernels.py``. It need not be complete nor in date: what
-is missing is compiled when it is needed, and what is not needed costs time of another core.
+``benchmarks/needed_kernels.py`` writes the record, ``needed_kernels.json``. It need not be complete or up to
+date: a function that is missing is compiled when it is needed, and one that is not needed only takes time of
+another core.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from ..kernels.ahead import AHEAD
 from ..kernels.needs import Need
 
 MOST = 3
-"""Processes at the most: the functions that take longest to compile set the pace of more of them."""
+"""Largest number of processes: with more, the functions that take longest to compile determine the time."""
 
 
 def compile_ahead(case: Case, threads: int | None = None) -> None:
-    """Have other processes compile what a case needs, if anything is not compiled.
+    """Let other processes compile the functions that a case needs, if any is not in the cache.
 
     Together with this process they use no more cores than ``threads``; default: all.
     """
@@ -31,10 +32,10 @@ def compile_ahead(case: Case, threads: int | None = None) -> None:
 
 
 def needs_of(case: Case) -> list[Need]:
-    """What the most similar recorded case needed, in the order in which it should be compiled ahead.
+    """The functions that the most similar recorded case needed, in the order in which to compile them ahead.
 
-    The run begins with what it needs first. So the others begin with what is needed last in the first step,
-    and after that compile what is needed only later.
+    The run itself compiles the functions of the first step from the first one on. So the other processes
+    begin with the last one of the first step, and then compile those that are needed only later.
     """
     record, wanted = recorded(), traits(case)
     nearest = min(record["cases"], key=lambda of: len(wanted ^ set(of["traits"])))

@@ -9,8 +9,9 @@ from typing import Any
 from ..case.model import Case, Wall
 from ..case.overrides import assign
 from ..case.resolved import resolved
+from ..case.shapes import shapes_in
+from ..contracts import BodyShape
 from ..errors import CaseError
-from ..geometry import Shape
 from ..output.content_names import name_by_content
 from ..output.run_directory import MESHES
 
@@ -21,7 +22,7 @@ class NamedFile:
 
     at: str
     """path in the case of the shape that names it, such as ``bodies.0.shape``"""
-    shape: Shape
+    shape: BodyShape
     field: str
     """of the shape"""
     name: str
@@ -61,15 +62,14 @@ def named_files(case: Case) -> list[NamedFile]:
     ]
 
 
-def _shapes(case: Case) -> dict[str, Shape]:
+def _shapes(case: Case) -> dict[str, BodyShape]:
     """The shapes of a case by their places in it: of bodies, and of surfaces that are made of one."""
-    found: dict[str, Shape] = {
+    found: dict[str, BodyShape] = {
         f"bodies.{number}.shape": body.shape for number, body in enumerate(case.bodies)
     }
     for name, wall in case.walls.items():
-        shape = getattr(wall.surface, "shape", None)
-        if isinstance(shape, Shape):
-            found[f"walls.{name}.surface.shape"] = shape
+        for field, shape in shapes_in(wall.surface).items():
+            found[f"walls.{name}.surface.{field}"] = shape
     return found
 
 
@@ -98,14 +98,14 @@ def from_copies(case: Case, files: list[NamedFile], directory: Path) -> Case:
         for number, body in enumerate(case.bodies)
     ]
     walls = {
-        name: _with_shape(wall, shapes.get(f"walls.{name}.surface.shape"))
+        name: _with_shapes(
+            wall, {field: shapes[f"walls.{name}.surface.{field}"] for field in shapes_in(wall.surface)}
+        )
         for name, wall in case.walls.items()
     }
     return case.model_copy(update={"bodies": bodies, "walls": walls})
 
 
-def _with_shape(wall: Wall, shape: Shape | None) -> Wall:
-    """A wall whose surface is made of another shape, if it is made of one."""
-    if shape is None:
-        return wall
-    return wall.model_copy(update={"surface": wall.surface.model_copy(update={"shape": shape})})
+def _with_shapes(wall: Wall, shapes: dict[str, BodyShape]) -> Wall:
+    """A wall whose surface is made of other shapes."""
+    return wall.model_copy(update={"surface": wall.surface.model_copy(update=shapes)})

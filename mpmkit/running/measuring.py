@@ -76,6 +76,21 @@ class _Look:
         ends = extents(p.position, p.box, 1, grid.extent, grid.periodic, grid.cell_size / 2)
         return float(ends[0, 1] + grid.lower[0]) if math.isfinite(ends[0, 1]) else math.nan
 
+    def width(self, place: float) -> float:
+        """Extent of the material along y, m, in 3-D, of the particles within half a cell of a place along the
+        first axis; twice that beside a plane of symmetry. Boxes count as in ``spread_diameter``."""
+        s = self._simulation
+        p, grid, faces = s.particles, s.grid, s.case.grid.faces
+        near = np.abs(p.position[:, 0] - (place - grid.lower[0])) <= grid.cell_size / 2
+        if s.case.space_.dim < 3 or not near.any():
+            return math.nan
+        half = np.minimum(p.box[near, 1], grid.cell_size / 2)
+        low = max(float((p.position[near, 1] - half).min()), 0.0)
+        high = min(float((p.position[near, 1] + half).max()), float(grid.extent[1]))
+        if faces.get("y_min") == "symmetry":
+            return 2 * high
+        return 2 * (float(grid.extent[1]) - low) if faces.get("y_max") == "symmetry" else high - low
+
     def force(self, wall: str, axis: str) -> float:
         """Force of a wall on the material, N, mean over the time since the last row."""
         s = self._simulation

@@ -33,11 +33,11 @@ class DensityWatch:
         self._next_look = 0
 
     def state(self) -> State:
-        """All its numbers."""
+        """The state: all numbers of this object."""
         return plain_state(self)
 
     def restore(self, state: State) -> None:
-        """Take its numbers back."""
+        """Restore the state."""
         restore_plain(self, state)
 
     def look(self, scene: SceneView) -> Density | None:

@@ -33,7 +33,7 @@ class Drains:
         return {"emptied": np.array(self.emptied)}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Take it back."""
+        """Restore the state."""
         self.emptied = str(state["emptied"])
 
     def take_out(self, time: float) -> bool:

@@ -1,4 +1,4 @@
-"""A source in a scene: the rows of its column that are not in yet, and what they do to the nodes.
+"""A source in a scene: the rows of its column behind the mouth, and their effect on the nodes.
 
 The column behind a mouth is a lattice of rows of length h, which moves with the velocity w of the source.
 The rows that can reach a node before the mouth are mapped to the nodes as particles are, so that the box of a
@@ -27,11 +27,11 @@ from .stateful import State, restore_plain
 from .tasks import TASKS
 
 AT_MOUTH = 1e-6
-"""Cells by which a node may be before the mouth and still count as behind it."""
+"""A node up to this many cells before the mouth still counts as behind it."""
 LEAST_MASS = 1e-9
 """Least mass of a node that the column reaches, relative to the largest: smaller ones are rounding."""
 LIFTED = 8
-"""Cells by which the column is lifted for the shape function, which knows no positions below zero."""
+"""Cells by which the column is shifted for the shape function, which needs positions above zero."""
 
 
 class Feed:
@@ -75,14 +75,14 @@ class Feed:
         self._acts = False
 
     def state(self) -> State:
-        """What has come in, and what the nodes of the last step have of it."""
+        """Sums of what has come in, and the mass of the column at the nodes in the last step."""
         return {
             name: np.array(getattr(self, name))
             for name in ("rows", "ratio", "mass_in", "impulse", "work", "mapped_mass")
         }
 
     def restore(self, state: State) -> None:
-        """Take it back."""
+        """Restore the state."""
         restore_plain(self, state)
 
     # --- The column
@@ -199,7 +199,7 @@ class Feed:
         self._force = np.zeros_like(self._momentum)
 
     def _map(self, momentum: bool, forces: bool, acceleration: np.ndarray) -> np.ndarray:
-        """What the rows give to the nodes of their block, ``(nodes, NODE)``."""
+        """Mass, momentum and force that the rows add to the nodes of their block, ``(nodes, NODE)``."""
         c = self._column
         nodes = np.zeros((int(np.prod(self._shape)) + LANES, NODE))
         self._scatter(

@@ -40,25 +40,29 @@ MARGIN = 5
 """Nodes along an axis that the window has in addition to the cells of the material."""
 
 
-def expected_particles(case: Case) -> float:
-    """Number of particles of a case: of its bodies, from their exact volumes, and of all that comes in."""
-    return incoming_particles(case) + sum(
-        expected_count(
-            body.shape,
-            case.space_,
-            case.grid.cell_size,
-            body.particles_along_axes(case.space_.dim),
-            keep=case.domain_bounds,
+def expected_particles(case: Case, until: float | None = None) -> float:
+    """Number of particles of a case: of its bodies, from their exact volumes, and of all that comes in.
+
+    It comes in by the time ``until``, s; default: the end of the run.
+    """
+    with blaming_plugins(plugins_of(case)):
+        return incoming_particles(case, case.end if until is None else until) + sum(
+            expected_count(
+                body.shape,
+                case.space_,
+                case.grid.cell_size,
+                body.particles_along_axes(case.space_.dim),
+                keep=case.domain_bounds,
+            )
+            for body in case.bodies
         )
-        for body in case.bodies
-    )
 
 
-def incoming_particles(case: Case) -> float:
-    """Number of particles that sources bring in by the end of the run."""
+def incoming_particles(case: Case, until: float) -> float:
+    """Number of particles that sources bring in by a time, s."""
     return sum(
         len(section_of(case, name).area)
-        * one.source.pushed(case.end, case.mouth_area(name), one.material.density)
+        * one.source.pushed(until, case.mouth_area(name), one.material.density)
         / row_length(case, name)
         for name, one in case.sources.items()
     )
@@ -104,12 +108,16 @@ def _of_forces(case: Case) -> int:
 
 
 def _redistributed(case: Case) -> int:
-    """Temporary bytes per particle of a redistribution: splines of two lattices, its shift."""
+    """Temporary bytes per particle of a redistribution: places of splines, its shift, parts of boxes.
+
+    The weights of the splines lie in the tables of the step, if these are large enough.
+    """
     if not redistributes(case.scheme.redistribution):
         return 0
     dim = case.space_.dim
-    bases, splines, shift_and_slope, numbers = 2 * dim, 2 * dim * SUPPORT, 2 * dim, 4
-    return INDEX * bases + DOUBLE * (splines + shift_and_slope + numbers)
+    splines = 2 * dim * SUPPORT if case.scheme.shape.support < SUPPORT else 0
+    bases, shift, parts, numbers = 2 * dim, dim, 2 * dim, 4
+    return INDEX * bases + DOUBLE * (splines + shift + parts + numbers)
 
 
 def _doubles_per_node(case: Case) -> float:
@@ -218,7 +226,7 @@ def require_memory(case: Case) -> None:
         raise CaseError(
             f"grid.cell_size is {case.grid.cell_size:g} m, which makes about {particles:.3g} particles "
             f"and needs {_gib(needed)} of memory, but {_gib(there)} is left for this run {limit}; "
-            f"use larger cells, fewer particles a cell, {fewer_rows}or a symmetry plane"
+            f"use larger cells, fewer particles per cell, {fewer_rows}or a symmetry plane"
         )
 
 

@@ -73,11 +73,12 @@ class SceneOperations:
         self.sorting = Sorting(self.grid, self.particles, self.window)
         self.walls.follow(self.sorting)
         self.base = np.zeros((n, dim), dtype=np.int32)
-        # One block of memory: a sort uses the memory of the tables for its temporary arrays.
+        # One block of memory: a sort and a redistribution use that of the tables for their temporary arrays.
         size = n * dim * support
         self._tables = np.zeros(max(2 * size, n * WIDEST))
         self.weight, self.gradient = self._tables[: 2 * size].reshape(2, n, dim, support)
         self.hoop = np.zeros((n, support if self.radial else 0))
+        self.stage.lend(self.base, self._tables)
         self._radial_tables = self.base[:, 0], self.weight[:, 0], self.gradient[:, 0]
         self._axial_tables = self.base[:, 1:], self.weight[:, 1:], self.gradient[:, 1:]
         self.averager = Averager(
@@ -352,7 +353,7 @@ class SceneOperations:
     def _update_volumes(self, dt: float) -> None:
         p = self.particles
         self.relax_volume(dt)
-        volumes.stretch(self._treated(self._rate), dt, p.initial_volume, p.volume_ratio, p.volume)
+        self.stage.stretch(self._treated(self._rate), dt)
         if p.deformation_gradient is not None:
             tensors.deform(p.velocity_gradient, dt, p.deformation_gradient)
         for group in p.present_groups:

@@ -100,6 +100,8 @@ class Particles:
     """(n,) the pressure after the volumetric treatment; it enters the internal force"""
     quadrature: np.ndarray
     """(n,) part of the volume of a particle that enters the internal force"""
+    expansion: np.ndarray
+    """(n,) d ln J per unit of shear that a redistribution has asked for"""
     deformation_gradient: np.ndarray | None
     portion: np.ndarray
     """(n,) share of an initial particle: 1 at the start, halved by a split, summed by a merge"""

@@ -14,7 +14,7 @@ from .stateful import State, Stateful, restore, state_of
 
 
 class Sources:
-    """All sources of a case: before a step their columns, in it their nodes, after it what comes in."""
+    """All sources of a case: before a step their columns, in it their nodes, after it new particles."""
 
     def __init__(self, case: Case, grid: Grid, window: Window, particles: Particles) -> None:
         first = len(case.bodies)
@@ -35,7 +35,7 @@ class Sources:
         return state_of(self.components)
 
     def restore(self, state: State) -> None:
-        """Restore them."""
+        """Restore the states of its sources."""
         restore(self.components, state)
 
     @property
@@ -50,12 +50,12 @@ class Sources:
 
     @property
     def impulse(self) -> np.ndarray:
-        """What the columns have given to the particles, N s, beside the momentum of what has come in."""
+        """Impulse of the columns on the particles, N s, without the momentum of what has come in."""
         return sum((feed.impulse for feed in self.feeds), start=np.zeros(self._particles.dim))
 
     @property
     def work(self) -> float:
-        """The work of it, J."""
+        """Work of this impulse, J."""
         return float(sum(feed.work for feed in self.feeds))
 
     def fastest(self, t0: float, t1: float) -> float:
@@ -67,7 +67,7 @@ class Sources:
         return any(feed.goes_on(time) for feed in self.feeds)
 
     def begin(self, time: float, dt: float, sorting: Sorting) -> None:
-        """Before a step of dt s."""
+        """Prepare the columns before a step of ``dt`` s."""
         if not self.feeds:
             return
         for feed in self.feeds:
@@ -85,12 +85,12 @@ class Sources:
             feed.carry(dt)
 
     def taken_up(self, flip: float) -> None:
-        """Count what the particles take of it."""
+        """Count the impulse and the work that the particles take from the nodes behind the mouths."""
         for feed in self.feeds:
             feed.taken_up(flip)
 
     def bring_in(self, time: float, dt: float, ledger: Ledger) -> bool:
-        """Add what is through the mouths after a step of dt s; return whether anything is."""
+        """Add the rows that have passed the mouths after a step of ``dt`` s; return whether there are any."""
         if not any(feed.due(time, dt) for feed in self.feeds):
             return False
         p = self._particles

@@ -10,6 +10,7 @@ With pytest each property is a test of its own; without pytest, ``for check in l
 from .checks import (
     Check,
     body_force_checks,
+    body_shape_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -28,6 +29,7 @@ from .checks import (
 )
 from .pytest_tests import (
     body_force_tests,
+    body_shape_tests,
     contact_tests,
     diagnostic_tests,
     equation_of_state_tests,
@@ -51,6 +53,8 @@ __all__ = [
     "Violation",
     "body_force_checks",
     "body_force_tests",
+    "body_shape_checks",
+    "body_shape_tests",
     "contact_checks",
     "contact_tests",
     "diagnostic_checks",

@@ -9,6 +9,7 @@ from typing import Any
 
 from ..contracts import (
     BodyForce,
+    BodyShape,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
@@ -30,6 +31,7 @@ from ..contracts import (
 from ..errors import GuardStop, PluginFault
 from . import (
     body_forces,
+    body_shapes,
     contacts,
     elastic,
     equations_of_state,
@@ -137,6 +139,13 @@ ON_BODY_FORCES = (
     body_forces.settles,
 )
 ON_INITIAL_FIELDS = (initial_fields.arrays, initial_fields.batch_order)
+ON_BODY_SHAPES = (
+    body_shapes.distances,
+    body_shapes.never_too_far,
+    body_shapes.leads_to_the_surface,
+    body_shapes.contains,
+    body_shapes.volume,
+)
 ON_SINKS = (sinks.takes_something, sinks.batch_order)
 ON_SOURCES = (sources.pushes, sources.fastest, sources.remembers_nothing)
 ON_DIAGNOSTICS = (
@@ -261,6 +270,23 @@ def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
             *(
                 (f"{check.__name__} {space.name}", partial(check, force, space, size))
                 for check in ON_BODY_FORCES
+                for space in homes
+            ),
+        ],
+    )
+
+
+def body_shape_checks(shape: BodyShape) -> list[Check]:
+    """What every body shape must be, in each space that can hold it; see ``body_shape_tests``."""
+    homes = body_shapes.at_home(shape)
+    return _of(
+        "body_shape",
+        shape,
+        [
+            ("home", partial(body_shapes.home, shape)),
+            *(
+                (f"{check.__name__} {space.name}", partial(check, shape, space))
+                for check in ON_BODY_SHAPES
                 for space in homes
             ),
         ],

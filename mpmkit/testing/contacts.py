@@ -175,7 +175,7 @@ def batch_order(contact: Contact) -> None:
 
 
 def _require_alike(found: ContactNodes, velocity: np.ndarray, after: ContactNodes, what: str) -> None:
-    """The velocity that is expected, and the memory but for the first nodes: those move with the wall to
+    """The velocity that is expected, and the memory except at the first nodes: those move with the wall to
     rounding only, and may come out on either side of a decision."""
     require_close(
         found.velocity,

@@ -104,7 +104,7 @@ def fraction(space: str, scheme: Scheme) -> None:
 def no_energy_from_nowhere(space: str, scheme: Scheme) -> None:
     """A block that swings never has more energy than at first; what is lost is damped.
 
-    But for a few percent, by which what the particles hold differs from what the nodes see.
+    Within a few per cent, because the velocity of the particles differs from that of the nodes.
     """
     lower, upper, domain = block(space, size=8)
     simulation = simulate(space, scheme, [(lower, upper, RUBBER, None)], domain, fraction=0.2)

@@ -96,7 +96,7 @@ def measured(diagnostic: Diagnostic, space: Space, scene: Any) -> np.ndarray:
 
 
 def remembers_nothing(diagnostic: Diagnostic, space: Space) -> None:
-    """The same scene gives the same numbers, to the bit, whenever it is looked at."""
+    """The same scene gives the same numbers, to the bit, at every call."""
     scene = Observation(in_motion(space.name))
     first, again = (measured(diagnostic, space, scene) for _ in range(2))
     require_same(np.nan_to_num(again), np.nan_to_num(first), lambda i: f"column {i}, measured again,")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from ..contracts import (
     BodyForce,
+    BodyShape,
     ConstitutiveLaw,
     Contact,
     Diagnostic,
@@ -25,6 +26,7 @@ from ..contracts import (
 from .checks import (
     Check,
     body_force_checks,
+    body_shape_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -172,6 +174,18 @@ def body_force_tests(force: BodyForce, *, size: float = 1.0) -> Test:
         size: m; places reach so far from the origin along each axis.
     """
     return _tests(body_force_checks(force, size=size))
+
+
+def body_shape_tests(shape: BodyShape) -> Test:
+    """A test function, as that of ``law_tests``, for a body shape, in each space that can hold it.
+
+    A signed distance that is never too far and leads to the surface, in bounds that hold the shape, and the
+    volume that it encloses.
+
+    Args:
+        shape: with parameters.
+    """
+    return _tests(body_shape_checks(shape))
 
 
 def initial_field_tests(field: InitialField, *, size: float = 1.0) -> Test:

@@ -34,7 +34,7 @@ def writes_in_place(shape: ShapeFunction) -> None:
 
 
 def partition_of_unity(shape: ShapeFunction) -> None:
-    """Weights are none below zero and sum to 1, gradients to 0, in one dimension and in three."""
+    """No weight is below zero; weights sum to 1, gradients to 0, in one dimension and in three."""
     for dim in (1, 3):
         x, l = cloud(dim)
         _, weight, gradient = tables(shape, x, l)

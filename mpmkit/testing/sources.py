@@ -98,7 +98,7 @@ def fastest(source: Source) -> None:
     lengths = np.array([_pushed(source, float(time)) for time in times])
     places = np.array([np.atleast_1d(source.moved(float(time))) for time in times], dtype=float)
     steps = np.diff(times)
-    # The normal may be along any axis: the column is as fast as its two parts differ at the least.
+    # The normal may be along any axis: so the column is at least as fast as the difference of its two parts.
     along, across = np.diff(lengths) / steps, np.linalg.norm(np.diff(places, axis=0), axis=1) / steps
     speed = np.abs(along - across)
     bound = np.array([source.fastest(float(a), float(b), AREA, DENSITY) for a, b in pairwise(times)])

@@ -35,7 +35,7 @@ class Specimens:
         self.work = np.zeros(n)
 
     def kinematics(self, L: np.ndarray) -> Kinematics:
-        """What the law is told at velocity gradients ``(n, 3, 3)``, 1/s."""
+        """The kinematics of a law for velocity gradients ``(n, 3, 3)``, 1/s."""
         F = self.F if self.law.needs_deformation_gradient else None
         J = np.linalg.det(self.F)
         return Kinematics(np.array(L, order="C"), J, np.zeros(len(L)), self.density, F, self.sound_speed)

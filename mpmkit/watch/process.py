@@ -45,7 +45,7 @@ class Watch:
 
     def _pass_on(self, process: subprocess.Popen[str]) -> None:
         assert process.stdout is not None
-        with suppress(OSError, ValueError):  # the run has ended meanwhile
+        with suppress(OSError, ValueError):  # the run may have ended before
             for line in process.stdout:
                 self._tell(line.strip())
 

@@ -140,7 +140,7 @@ class HoopOfTheCell(Hats):
 
 
 class RadialTablesOfNobody(Hats):
-    """Leaves the radial tables to whoever filled them before."""
+    """Does not write the radial tables, so that they keep old values."""
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
         hoop[:] = 1 / radius[:, None]

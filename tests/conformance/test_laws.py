@@ -84,7 +84,7 @@ CURVES = {
     "bingham": lambda law, rate: law.yield_stress + law.plastic_viscosity * rate,
     "herschel-bulkley": lambda law, rate: law.yield_stress + law.consistency * rate**law.flow_index,
 }
-"""Written anew here, by the name of the fluid; a law that is not here is held to its own."""
+"""Flow curves written again here, by the name of the law; other laws are compared with their own."""
 
 
 def checks_of(law: ConstitutiveLaw) -> list[Check]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import body_force_mutants
+import body_shape_mutants
 import contact_mutants
 import diagnostic_mutants
 import equation_of_state_mutants
@@ -26,6 +27,7 @@ from mpmkit.registry import installed
 from mpmkit.testing import (
     Violation,
     body_force_checks,
+    body_shape_checks,
     contact_checks,
     diagnostic_checks,
     equation_of_state_checks,
@@ -198,13 +200,23 @@ CHECKS = {
     "surface": surface_checks,
     "contact": contact_checks,
     "body_force": body_force_checks,
+    "body_shape": body_shape_checks,
     "initial_field": initial_field_checks,
     "sink": sink_checks,
     "source": source_checks,
     "diagnostic": diagnostic_checks,
     "particle_field": particle_field_checks,
 }
-NEED_PARAMETERS = ("surface", "contact", "body_force", "initial_field", "sink", "source", "diagnostic")
+NEED_PARAMETERS = (
+    "surface",
+    "contact",
+    "body_force",
+    "body_shape",
+    "initial_field",
+    "sink",
+    "source",
+    "diagnostic",
+)
 """Kinds whose plug-ins go through the kit in test files of their own, with parameters."""
 OTHER_MUTANTS = [
     ("velocity", velocity_mutants.Amplified, "no energy from nowhere plane-strain"),
@@ -297,6 +309,22 @@ OTHER_MUTANTS = [
     ("body_force", body_force_mutants.Weaker, "largest 3d"),
     ("body_force", body_force_mutants.Restless, "settles plane-strain"),
     ("body_force", body_force_mutants.NoPeriod, "settles 3d"),
+    ("body_shape", body_shape_mutants.Nowhere, "home"),
+    ("body_shape", body_shape_mutants.SaysNothing, "home"),
+    ("body_shape", body_shape_mutants.OneCorner, "home"),
+    ("body_shape", body_shape_mutants.UpsideDown, "home"),
+    ("body_shape", body_shape_mutants.BehindTheAxis, "home"),
+    ("body_shape", body_shape_mutants.LeavesItsBounds, "distances 3d"),
+    ("body_shape", body_shape_mutants.Column, "distances plane-strain"),
+    ("body_shape", body_shape_mutants.NoNumber, "distances axisymmetric"),
+    ("body_shape", body_shape_mutants.Moves, "distances 3d"),
+    ("body_shape", body_shape_mutants.KnowsTheOthers, "distances plane-strain"),
+    ("body_shape", body_shape_mutants.TwiceAsFar, "never too far 3d"),
+    ("body_shape", body_shape_mutants.HalfAsFar, "leads to the surface axisymmetric"),
+    ("body_shape", body_shape_mutants.InsideOut, "distances plane-strain"),
+    ("body_shape", body_shape_mutants.HoldsTooMuch, "contains 3d"),
+    ("body_shape", body_shape_mutants.Heavy, "volume axisymmetric"),
+    ("body_shape", body_shape_mutants.LosesAPart, "volume plane-strain"),
     ("initial_field", initial_field_mutants.Nowhere, "home"),
     ("initial_field", initial_field_mutants.SaysNothing, "home"),
     ("initial_field", initial_field_mutants.OneForAll, "arrays"),
@@ -360,6 +388,7 @@ OTHER_MUTANTS = [
         ("surface", surface_mutants.Rising),
         ("contact", contact_mutants.Sticky),
         ("body_force", body_force_mutants.Pulse),
+        ("body_shape", body_shape_mutants.Ball),
         ("initial_field", initial_field_mutants.Rising),
         ("sink", sink_mutants.Below),
         ("source", source_mutants.Tap),

@@ -1,6 +1,6 @@
-"""Cases that nobody would write: valid ones run, others end with status 2 and one sentence.
+"""Random cases: valid ones run, others end with status 2 and one sentence.
 
-A quick run draws a few hundred, always the same; ``pytest -m slow tests/fuzz`` draws thousands anew.
+A quick run draws a few hundred, always the same; ``pytest -m slow tests/fuzz`` draws thousands of new ones.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ class Sheet:
         self.keep()
 
     def keep(self) -> None:
-        """Write the sheet to its file, if anybody asked for it."""
+        """Write the sheet to its file, if one was asked for."""
         path = file_of(self.test)
         if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -21,7 +21,7 @@ FLUIDS = {
     "water": {"law": "newtonian", "density": 1000.0, "viscosity": 1e-3, "sound_speed": 20.0},
     "a fluid of 20 Pa s": {"law": "newtonian", "density": 2574.0, "viscosity": 20.0, "sound_speed": 20.0},
 }
-WALLS = {"cone": None, "cup": 4, "thin cup": 2}
+WALLS = {"cone": None, "cup": 3, "thin cup": 2}
 """Thickness, cells."""
 
 
@@ -57,8 +57,9 @@ def test_pressure_at_the_foot_of_a_filled_cone(validate):
 
 
 THIN = pytest.mark.xfail(
-    reason="redistributions feed it: the energy guard stops water at 0.208 s and concrete at 1.68 s. Water in"
-    " a wall that is 4 cells thick, or with `none`, is not stopped within 1 s",
+    reason="a caution says so before the run: nodes beyond the middle of the wall belong to its other side,"
+    " but splines reach 1.5 cells. The energy guard stops water at 0.128 s; with `none` its pressure is 11 %"
+    " wrong",
     raises=GuardStop,
     strict=True,
 )
@@ -80,8 +81,19 @@ LONG = pytest.mark.parametrize(
 )
 
 
+SWIRLS = pytest.mark.xfail(
+    reason="water without yield stress is kept in motion: the energy guard stops it at 3.9 s, by when `even`"
+    " has added 3.9 J; with one pass of the weights it is torn at 2.3 s",
+    raises=GuardStop,
+    strict=True,
+)
+
+
 @pytest.mark.slow
-@LONG
+@pytest.mark.parametrize(
+    ("fluid", "wall"),
+    [("concrete", "cone"), ("concrete", "cup"), pytest.param("water", "cone", marks=SWIRLS)],
+)
 def test_filled_cone_keeps_its_content_for_long(validate, fluid, wall):
     hold_places(validate, fluid, wall, 5.0)
 

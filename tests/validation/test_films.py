@@ -23,6 +23,7 @@ def film(degrees: float, height: float, m: float, cells: int = 10) -> Channel:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_film_on_20_degrees(validate):
     """Started 3 % too slow, so that it has to find its speed. It flows at 56.42 mm/s."""
     drive, _ = down_slope(CONCRETE.density, 20)

@@ -141,7 +141,7 @@ def test_quarter_at_5_mm(validate):
 
 
 def test_quarter_model_agrees_with_axisymmetric(validate):
-    """Two spaces, two sets of kernels, one body: 20 mm; 8 particles a cell are enough while it falls."""
+    """Two spaces, two sets of kernels, one body: 20 mm; 8 particles per cell are enough while it falls."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(20)), until=0.3)
     few = ["bodies.0.particles_per_cell=8", "grid.cell_size=0.02"]
     domain = 'grid.domain={"x": [0, 0.36], "y": [0, 0.36], "z": [0, 0.32]}'
@@ -152,7 +152,7 @@ def test_quarter_model_agrees_with_axisymmetric(validate):
 
 @pytest.mark.slow
 def test_quarter_model_agrees_with_axisymmetric_to_its_rest(validate):
-    """27 particles a cell, as many at the end as at the start."""
+    """27 particles per cell, as many at the end as at the start."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=1.4)
     quarter = Slump(mpmkit.load_case(ROOT / "cases/slump_quarter.json"), until=1.4)
     off = np.abs(quarter.spread / round_body.spread - 1).max()
@@ -216,3 +216,26 @@ def test_the_settings_of_the_paper_do_not_rest(validate):
     rate = (slump.at(4.0) / slump.at(2.0) - 1) / 2
     assert rate > 0.01  # it does not pass the criterion of rest
     assert slump.energy[-1] > 1e-4
+
+
+def test_the_sound_speed_has_no_influence(validate):
+    """Stiffness beyond that of a nearly incompressible fluid changes the noise of the pressure only.
+
+    The paper's factor is 50. A correction of J that came at once would be a pressure of ρ c² times as much:
+    with ``even`` it once took 4 % of the spread at 0.3 s here, and 7 % with cells of 10 mm.
+    """
+    soft, stiff = (
+        Slump(
+            mpmkit.load_case(
+                ROOT / "cases" / "slump.json",
+                [*cells(20), f'bodies.0.material.sound_speed={{"factor": {factor}}}'],
+            ),
+            0.3,
+        )
+        for factor in (10, 50)
+    )
+    name = "Slump, 20 mm, c = 50 √(2 g h) in place of 10"
+    validate(f"{name}: spread at 0.3 s", stiff.spread[-1] / soft.spread[-1], close_to(1.0, rel=0.01))
+    available = 9.81 * stiff.simulation.particles.mass.sum() * 0.3 / 4
+    fed = stiff.simulation.redistribution_energy / available
+    validate(f"{name}: energy that the redistribution adds, over m g h/4", fed, below(0.06, "0"))

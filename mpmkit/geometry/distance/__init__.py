@@ -5,20 +5,16 @@ from .brick import Brick, BrickShell
 from .extruded import Extruded
 from .revolved import Revolved
 from .section import Section, trapezium, trapezium_plates, trapezium_shell
-from .solid import HalfSpace, Inverted, Jointed, Shell, Solid
+from .surface_mesh import SurfaceMesh
 
 __all__ = [
     "Ball",
     "Brick",
     "BrickShell",
     "Extruded",
-    "HalfSpace",
-    "Inverted",
-    "Jointed",
     "Revolved",
     "Section",
-    "Shell",
-    "Solid",
+    "SurfaceMesh",
     "trapezium",
     "trapezium_plates",
     "trapezium_shell",

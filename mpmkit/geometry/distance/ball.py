@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .solid import Found, Solid
+from ...contracts.solid import Found, Solid
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
+from ...contracts.solid import Found, HalfSpace, Solid
 from .ball import unit
-from .solid import Found, HalfSpace, Solid
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...contracts.solid import Found, HalfSpace, Solid
 from .ball import unit
 from .section import Section
-from .solid import Found, HalfSpace, Solid
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...contracts.solid import Found, Solid
 from .ball import unit
-from .solid import Found, Solid
 
 _AROUND = 64
 """Corners of the polygon around a circle; it is a thousandth wider."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...contracts.solid import Found, HalfSpace, Solid
 from ...kernels.sections import section_distance
-from .solid import Found, HalfSpace, Solid
 
 Loop = list[tuple[float, float]]
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ...contracts.solid import Found, Solid
 from .ball import unit
-from .solid import Found, Solid
 
 _EDGE = 1e-7
 """Part of a triangle's height within which a point counts as on the edge, far above rounding."""

@@ -1,15 +1,16 @@
-"""What plug-ins give back, and what they write where they must not.
+"""Checks of what plug-ins return, and of what they write.
 
-What a plug-in returns is checked where it is used (``returned``). Shapes and bounds are checked in every
-step. That numbers are finite is checked in every step of a small scene, and every ``LOOKS`` steps of a large
-one, where a pass over all arrays costs per cents.
+The values that a plug-in returns are checked where they are used (``returned``). Shapes and bounds are
+checked in every step. Whether numbers are finite is checked in every step of a small scene, but only every
+``LOOKS`` steps of a large one, because going through all arrays takes some per cent of the time of a step.
 
-Compiled code writes wherever its indices lead, and nothing says so. Every ``INTERVAL`` steps, the first one
-included, plug-ins are therefore rehearsed: called on copies of what they are given, each between bands that
-nobody may write to. An order and a velocity update get no arrays: what they ask for in a step is counted
-(``account``).
+Compiled code that writes out of bounds gives no error. So every ``INTERVAL`` steps, and in the first step,
+each plug-in gets a trial call (``rehearse_…``): it is called with copies of its arguments, each between bands
+of memory that it must not change. An order and a velocity update get no arrays. For them, the operations that
+they call in a step are added up (``account``).
 
-A rehearsal cannot see what only happens to other particles or in other steps, nor writes beyond the bands.
+A trial call cannot detect faults that occur only for other particles or in other steps, nor writes beyond the
+bands.
 """
 
 from . import forces
@@ -32,9 +33,9 @@ from .treatments import Rehearsed
 from .walls import AuditedSurface, call_contact, placed, problem, rehearse_contact, require_contact
 
 LOOKS = 20
-"""Steps between two looks at all numbers of a scene with more than ``FEW`` particles."""
+"""Steps between two checks of all numbers of a scene with more than ``FEW`` particles."""
 INTERVAL = 200
-"""Steps between two rehearsals: they then cost less than a hundredth of a run, however few its particles."""
+"""Steps between two trial calls: these then take less than 1 % of a run, also with few particles."""
 
 __all__ = [
     "FEW",

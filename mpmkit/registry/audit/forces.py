@@ -45,7 +45,7 @@ def largest(force: BodyForce, lower: np.ndarray, upper: np.ndarray, t0: float, t
 
 
 def settles(force: BodyForce) -> float:
-    """Time, s, from which on it no longer changes; raises PluginFault if it is not a number."""
+    """Time, s, from which on the force is constant; raises PluginFault if it is not a number."""
     found = require_number(force, "settles", force.settles())
     if np.isnan(found):
         raise PluginFault(force, "gave nan as settles; it must be a time, or infinite")

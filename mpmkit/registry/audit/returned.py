@@ -1,4 +1,4 @@
-"""What methods of plug-ins return: numbers, arrays and sentences."""
+"""Checks of what methods of plug-ins return: numbers, arrays and sentences."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from ...kernels.locate import first_not_finite
 
 DOUBLE = np.dtype(np.float64)
 FEW = 20_000
-"""Particles up to which all numbers are looked at in every step."""
+"""Up to this number of particles, all numbers are checked in every step."""
 NOTHING = 1e-6
-"""Energy that counts as none, over that of the fastest wave, ρ c²: far above rounding."""
+"""Energies below this part of ρ c² of the fastest wave count as zero: far above rounding errors."""
 
 
 def require_number(plugin: Plugin, what: str, value: Any) -> float:
-    """The number that a plug-in gave for ``what``, which may be no number, ``nan``, all the same.
+    """The number that a plug-in returned from ``what``; it may be ``nan``.
 
     Raises:
-        PluginFault: it is not a real number of Python or numpy, nor an array of one.
+        PluginFault: it is neither a real number of Python or NumPy nor an array of one number.
     """
     if isinstance(value, float):
         return value
@@ -37,7 +37,7 @@ def require_number(plugin: Plugin, what: str, value: Any) -> float:
 
 
 def require_truth(plugin: Plugin, what: str, value: Any) -> bool:
-    """The yes or no that a plug-in returned from ``what``.
+    """The truth value that a plug-in returned from ``what``.
 
     Raises:
         PluginFault: it is neither ``True`` nor ``False``.
@@ -51,7 +51,7 @@ def require_sentences(plugin: Plugin, what: str, value: Any) -> list[str]:
     """The sentences that a plug-in returned from ``what``.
 
     Raises:
-        PluginFault: it is no list of strings.
+        PluginFault: it is not a list of strings.
     """
     if isinstance(value, list | tuple) and all(isinstance(sentence, str) for sentence in value):
         return list(value)
@@ -59,9 +59,9 @@ def require_sentences(plugin: Plugin, what: str, value: Any) -> list[str]:
 
 
 def require_array(plugin: Plugin | None, what: str, returned: Any, shape: tuple[int, ...]) -> None:
-    """Raise PluginFault unless what a method of a plug-in returned is an array of real numbers of a shape."""
+    """Raise PluginFault if a plug-in did not return an array of real numbers with this shape."""
     if type(returned) is np.ndarray and returned.shape == shape and returned.dtype is DOUBLE:
-        return  # as nearly always, in every step
+        return  # nearly always; this check is made in every step
     if type(returned) not in (np.ndarray, np.memmap) or returned.shape != shape:
         raise PluginFault(
             plugin, f"returned {described(returned)} from {what}; it must be an array of shape {shape}"
@@ -75,14 +75,14 @@ def require_array(plugin: Plugin | None, what: str, returned: Any, shape: tuple[
 def require_finite(
     plugin: Plugin, what: str, written: np.ndarray, numbers: np.ndarray, given: Iterable[np.ndarray]
 ) -> None:
-    """Raise PluginFault if a plug-in wrote what is no finite number, though all that it was given is one.
+    """Raise PluginFault if a plug-in wrote a number that is not finite although its arguments are finite.
 
     Args:
-        plugin: who wrote it.
-        what: what it is, in words.
-        written: ``(n, …)``.
-        numbers: ``(n,)``, what the particles are called.
-        given: arrays with an entry a particle.
+        plugin: the plug-in.
+        what: the quantity in words, with its article.
+        written: what the plug-in wrote, ``(n, …)``.
+        numbers: the numbers of the particles, ``(n,)``.
+        given: its arguments, arrays with an entry for each particle.
     """
     bad = first_bad(written)
     if bad < 0:
@@ -90,7 +90,7 @@ def require_finite(
     if all(first_bad(array) < 0 for array in given):
         raise PluginFault(
             plugin,
-            f"gave particle {numbers[bad]} {what} that is not finite, though all that it was given is",
+            f"gave particle {numbers[bad]} {what} that is not finite, although all its arguments are",
             particle=int(numbers[bad]),
         )
 
@@ -105,13 +105,14 @@ def require_energy(
 ) -> None:
     """Raise PluginFault if stored energies, ``(n,)``, J/m³, are not finite, or negative beyond rounding.
 
-    Such an energy would be missed in, or hide, what the guard of the energy counts.
+    Such an energy would make the balance of the energy guard wrong.
 
     Args:
-        volume_ratio, stress: what it was computed from; where they are beyond sense, the run has diverged.
+        volume_ratio, stress: arguments of the energy; if they are out of range, the run has diverged, and the
+            plug-in is not at fault.
         modulus: ρ c² of the fastest wave, Pa.
     """
-    worst = int(np.argmin(density))  # which is that of the first nan, where there is one
+    worst = int(np.argmin(density))  # argmin finds the first nan, if there is one
     if density[worst] >= -NOTHING * modulus and np.isfinite(density.max()):
         return
     sound = volume_ratio.min() >= LEAST_RATIO and volume_ratio.max() <= MOST_RATIO
@@ -121,8 +122,8 @@ def require_energy(
     if density[worst] < 0:
         raise PluginFault(
             plugin,
-            f"gave particle {numbers[worst]} an energy of {density[worst]:.4g} J/m³; what is stored cannot "
-            "be negative",
+            f"gave particle {numbers[worst]} an energy of {density[worst]:.4g} J/m³; a stored energy "
+            "cannot be negative",
             particle=int(numbers[worst]),
         )
 
@@ -131,14 +132,14 @@ def first_bad(array: np.ndarray) -> int:
     """First row with an entry that is not finite; -1 if there is none."""
     if len(array) < FEW and math.isfinite(
         np.add.reduce(array, axis=None)
-    ):  # for few, less than the call of a kernel
+    ):  # for few particles this is faster than calling a kernel
         return -1
     firsts = np.empty(len(array) // CHUNK + 1, dtype=np.int64)
     return int(first_not_finite(array.reshape(len(array), -1), firsts))
 
 
 def described(value: Any) -> str:
-    """A value as sentences have it."""
+    """A value in words, for a message."""
     if value is None:
         return "nothing"
     if type(value) in (np.ndarray, np.memmap):

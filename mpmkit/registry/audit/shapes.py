@@ -1,4 +1,4 @@
-"""Shape functions: what they write, where it leads, and whether linear fields are kept."""
+"""Shape functions: what they write, to which nodes, and whether they reproduce linear fields."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .fences import READ, WRITTEN, Fenced, require_intact, require_unchanged, sa
 from .returned import FEW
 
 CLOSE = 1e-6
-"""How far sums of weights may be from what they must be: far above rounding, far below what would matter."""
+"""Largest error of the sums of weights: far above rounding errors, and far below any effect on results."""
 DOMAINS = ("strain", "fixed", "stretch", "volume")
-"""Rules by which a particle's domain may follow the deformation."""
+"""The rules by which the domain of a particle can follow the deformation."""
 
 
 def rehearse_shape(
@@ -23,7 +23,7 @@ def rehearse_shape(
     """Evaluate a shape function on copies of a sample of the particles.
 
     Raises:
-        PluginFault: it wrote where it must not, or its tables cannot be used.
+        PluginFault: it wrote to memory that it must not change, or its tables cannot be used.
     """
     which = sample(len(position))
     n, dim = len(which), position.shape[1]
@@ -64,9 +64,10 @@ def _require_linear(
     half: np.ndarray,
     radial: bool,
 ) -> None:
-    """Σ N (x_node - x) = 0 and Σ ∇N x_node = 1 along every axis; all lengths are in cells.
+    """Require Σ N (x_node - x) = 0 and Σ ∇N x_node = 1 along every axis; all lengths are in cells.
 
-    An average weighted with the radius has its centre farther out than the particle, but within its domain.
+    In an axisymmetric scene the weights are averages weighted with the radius. Their centre is farther out
+    than the particle, but within its domain.
     """
     if np.abs((gradient * away).sum(axis=-1) - 1).max() > CLOSE:
         raise PluginFault(shape, "gave gradients of which that of a linear field, Σ ∇N x, is not one")
@@ -82,13 +83,13 @@ def _require_linear(
 def require_bounds(
     shape: ShapeFunction, position: np.ndarray, cell_size: float, base: np.ndarray, numbers: np.ndarray
 ) -> None:
-    """Raise PluginFault if a shape function leads a particle to nodes that are not there for it.
+    """Raise PluginFault if ``base`` of a shape function leads to nodes too far from a particle.
 
-    It is called in every step: compiled loops go wherever ``base`` leads.
+    This is checked in every step, because compiled loops do not check ``base``.
     """
     look = near if len(base) < FEW else near_in_parallel
-    # A node is an integer: to be at least floor(x) - 1 it must be more than x - 2, and to be at most
-    # floor(x) + 2 it must be at most x + 2.
+    # Node numbers are integers. So "at least floor(x) - 1" is the same as "more than x - 2", and "at most
+    # floor(x) + 2" is the same as "at most x + 2".
     least, most = -2 - CLOSE, 3 - shape.support + CLOSE
     if look(position, 1 / cell_size, base, least, most):
         return
@@ -107,7 +108,7 @@ def require_bounds(
 def require_weights(
     shape: Plugin, weight: np.ndarray, gradient: np.ndarray, cell_size: float, numbers: np.ndarray
 ) -> None:
-    """Raise PluginFault if weights do not sum to one, or gradients to zero; ``nan`` does neither."""
+    """Raise PluginFault if weights do not sum to one, or gradients to zero, or if a sum is ``nan``."""
     firsts = np.empty(len(weight) // CHUNK + 1, dtype=np.int64)
     bad = int(first_untrue(weight, gradient, cell_size, CLOSE, firsts))
     if bad < 0:
@@ -124,7 +125,7 @@ def particle_domain(shape: ShapeFunction) -> str:
     """The rule by which particle domains follow the deformation.
 
     Raises:
-        PluginFault: it is not one that there is.
+        PluginFault: there is no such rule.
     """
     rule = shape.particle_domain
     if rule not in DOMAINS:

@@ -1,4 +1,4 @@
-"""Surfaces and contacts: what they return, and what they write where they must not."""
+"""Surfaces and contacts: what they return, and what they write."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .fences import READ, WRITTEN, Fenced, require_intact, require_unchanged, sa
 from .returned import described, require_array, require_number, require_truth
 
 UNIT = 1e-6
-"""How far the length of a normal may be from 1."""
+"""Largest difference between the length of a normal and 1."""
 
 
 def problem(author: Surface, space: Space) -> str | None:
-    """Why a space cannot hold a surface, in one sentence; None if it can.
+    """Why a surface cannot be used in a space, in one sentence; None if it can.
 
     Raises:
-        PluginFault: it returned something else.
+        PluginFault: the surface returned something else.
     """
     found = author.problem(space)
     if found is not None and not isinstance(found, str):
@@ -34,9 +34,9 @@ def problem(author: Surface, space: Space) -> str | None:
 
 @dataclass(frozen=True)
 class AuditedSurface:
-    """A surface in its space, of which everything is looked at before it is used; see ``PlacedSurface``.
+    """A surface in its space, whose values are checked before they are used; see ``PlacedSurface``.
 
-    All calls are to be made in a block of ``blaming_plugins``.
+    Make all calls inside a block of ``blaming_plugins``.
     """
 
     author: Surface
@@ -44,7 +44,7 @@ class AuditedSurface:
 
     @property
     def thickness(self) -> float:
-        """m; infinite for a wall that fills all that is behind its surface."""
+        """Thickness, m; infinite for a wall that fills the whole space behind its surface."""
         given = getattr(self.placed, "thickness", None)
         found = math.inf if given is None else require_number(self.author, "thickness", given)
         if not found > 0:
@@ -53,7 +53,7 @@ class AuditedSurface:
 
     @property
     def parts(self) -> list[AuditedSurface]:
-        """The surfaces that are together the wall; itself if it has no parts."""
+        """The surfaces that together form the wall; the surface itself if it has no parts."""
         found = getattr(self.placed, "parts", None)
         if found is None:
             return [self]
@@ -66,7 +66,7 @@ class AuditedSurface:
         return [AuditedSurface(self.author, part) for part in found]
 
     def distance(self, x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """d, m, (k,), and n, (k, dim), at points, m, (k, dim)."""
+        """Distance, m, (k,), and unit normal, (k, dim), at points, m, (k, dim)."""
         returned = self.placed.distance(x, t)
         if not isinstance(returned, tuple) or len(returned) != 2:
             raise PluginFault(
@@ -83,7 +83,7 @@ class AuditedSurface:
         return distance, normal
 
     def velocity(self, x: np.ndarray, t: float) -> np.ndarray:
-        """m/s, (k, dim), of the wall at the points of its surface nearest to ``x``."""
+        """Velocity of the wall, m/s, (k, dim), at the points of its surface nearest to ``x``."""
         returned = self.placed.velocity(x, t)
         require_array(self.author, "velocity", returned, x.shape)
         self._require("a velocity that is not finite", np.isfinite(returned).all(axis=1), x, t)
@@ -99,7 +99,7 @@ class AuditedSurface:
         return found
 
     def present(self, t: float) -> bool:
-        """Whether it is there at a time, s."""
+        """Whether the wall is present at a time, s."""
         return require_truth(self.author, "present", self.placed.present(t))
 
     def _require(self, what: str, sound: np.ndarray, x: np.ndarray, t: float) -> None:
@@ -112,7 +112,7 @@ def placed(author: Surface, space: Space) -> AuditedSurface:
     """A surface in its space, for use in a block of ``blaming_plugins``.
 
     Raises:
-        PluginFault: it has no surface for that space.
+        PluginFault: it did not return a surface for this space.
     """
     found = author.placed(space)
     _require_methods(author, found, "returned {} from placed")
@@ -126,7 +126,7 @@ def _require_methods(author: Surface, found: object, what: str) -> None:
 
 
 def require_contact(author: Contact) -> None:
-    """Raise PluginFault unless what a contact says of itself can be used."""
+    """Raise PluginFault if the class attributes of a contact cannot be used."""
     if author.parity not in get_args(Parity):
         allowed = " or ".join(f"'{name}'" for name in get_args(Parity))
         raise PluginFault(author, f"has the parity {author.parity!r}; it must be {allowed}")
@@ -138,11 +138,11 @@ def require_contact(author: Contact) -> None:
 
 
 def call_contact(author: Contact, nodes: ContactNodes, dt: float | None = None) -> None:
-    """``mapped`` of a contact, or ``solved`` if there is a ``dt``, s.
+    """Call ``mapped`` of a contact, or ``solved`` if a step ``dt``, s, is given.
 
     Raises:
-        PluginFault: it returned something, replaced an array, or gave a velocity or a memory that is not
-            finite though those before were.
+        PluginFault: it returned a value, replaced an array, or wrote a velocity or a memory that is not
+            finite although all were finite before.
     """
     velocity, kept = nodes.velocity, dict(nodes.memory)
     sound = np.isfinite(velocity).all()
@@ -168,7 +168,8 @@ def rehearse_contact(author: Contact, nodes: ContactNodes, dt: float | None = No
     """``call_contact`` on copies of a sample of the nodes.
 
     Raises:
-        PluginFault: it wrote to what it may only read, to a node that is not touched, or beyond an array.
+        PluginFault: it wrote to an array that it may only read, to a node that is not touched, or beyond an
+            array.
     """
     which = sample(len(nodes.mass))
     read = {

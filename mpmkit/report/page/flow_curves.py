@@ -52,16 +52,18 @@ def section(source: Source) -> Section | None:
 
 
 def _materials(source: Source) -> list[tuple[Material, list[int]]]:
-    """Each material once, with the numbers of its bodies."""
+    """Each material once, with the numbers of its bodies; sources have the numbers after the bodies."""
     assert source.case is not None
     found: list[tuple[Material, list[int]]] = []
-    for number_, body in enumerate(source.case.bodies):
+    case = source.case
+    given = [of.material for of in case.bodies] + [of.material for of in case.sources.values()]
+    for number_, of_one in enumerate(given):
         for material, bodies in found:
-            if material == body.material:
+            if material == of_one:
                 bodies.append(number_)
                 break
         else:
-            found.append((body.material, [number_]))
+            found.append((of_one, [number_]))
     return found
 
 

@@ -18,6 +18,7 @@ from ...output.summary import (
     lifted_later,
     trusted_to_the_end,
 )
+from . import mass_flow
 from .section import Section, paragraph
 from .source import Source
 from .words import count, duration, length, number, seconds, unit_of
@@ -59,7 +60,8 @@ def _ending(source: Source) -> str:
         ).strip()
     can_continue = why == "interrupted" and Checkpoints(RunDirectory(source.directory).checkpoints).paths()
     further = f" {CONTINUE}" if can_continue else ""
-    return f"{ENDED[why]} at t = {seconds(end)}. {_state(source)}{further}"
+    state = _state(source) if end > 0 else "The material had not moved yet."
+    return f"{ENDED[why]} at t = {seconds(end)}. {state}{further}"
 
 
 def _state(source: Source) -> str:
@@ -80,7 +82,7 @@ def figures(source: Source) -> list[tuple[str, str, str]]:
         found += [_spread(source), *_t500(source), _slump(source)]
     else:
         found += _extent(source)
-    found += [_height(source), *_measurements(source), _speed(source)]
+    found += [_height(source), *_measurements(source), *mass_flow.figures(source), _speed(source)]
     if not source.running:
         summary = source.results.summary
         took = duration(summary["wall_time"])
@@ -137,7 +139,8 @@ def _t500(source: Source) -> list[tuple[str, str, str]]:
 
 def _slump(source: Source) -> tuple[str, str, str] | None:
     value = _last(source, "slump")
-    if value is None or source.results.stopped_by_guard:
+    empty = not source.results.case["bodies"]  # a scene that is empty at the start has no initial height
+    if value is None or empty or source.results.stopped_by_guard:
         return None
     return "Slump", length(value), "how far the top of the material sank, on its axis"
 

@@ -1,4 +1,4 @@
-"""Section: what the measurements, diagnostics and sinks of the case recorded."""
+"""Section: what the measurements, diagnostics, sources and sinks of the case recorded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,13 @@ from .words import number, unit_of
 
 OWN = {column.name for column in COLUMNS}
 """Scalars of every history; other sections show them."""
-SINKS = {"sink_mass": "mass taken out", "sink_rate": "rate"}
+PASSED = {
+    "source_mass": "mass brought in",
+    "source_rate": "rate",
+    "sink_mass": "mass taken out",
+    "sink_rate": "rate",
+}
+"""Columns with an entry for each source or sink, and what they are."""
 
 
 class Curve(NamedTuple):
@@ -58,10 +64,11 @@ def _curves(source: Source) -> Iterator[Curve]:
     for key, variable in history.data_vars.items():
         name = str(key)
         unit, meaning = unit_of(variable.attrs.get("units", "1")), str(variable.attrs.get("long_name", name))
-        if name in SINKS:
-            for sink in variable["sink"].values:
-                values = _finite(variable.sel(sink=sink))
-                yield Curve(f"{SINKS[name]}, by sink", str(sink), unit, f"{meaning}: {sink}", values)
+        if name in PASSED:
+            kind = name.partition("_")[0]
+            for one in variable[kind].values:
+                values = _finite(variable.sel({kind: one}))
+                yield Curve(f"{PASSED[name]}, by {kind}", str(one), unit, f"{meaning}: {one}", values)
         elif variable.dims == ("time",) and name not in OWN:
             group = name.partition(".")[0] if "." in name else "measurements of the case"
             yield Curve(group, name, unit, meaning, _finite(variable))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...kernels.gather import gather_scalar
-from ...kernels.scatter import PAIR, scatter_pairs
+from ...kernels.scatter import scatter_scalar
 from ...kernels.splines import PARTS, fill_parts
 from .mirrored import Mirrored, require_field
 
@@ -36,12 +36,11 @@ class BoxCells:
         fill_parts(position, half_size, 1 / block.spacing, self._base, self._part)
 
     def filling(self, weights: np.ndarray | None = None) -> np.ndarray:
-        block, pairs = self.block, self.block.empty(PAIR)
+        block, sums = self.block, self.block.empty()[:, 0]
         size = self._size if weights is None else self._size * weights
-        scatter_pairs(self._dim, PARTS)(
-            pairs, block.strides, block.lower, self._tasks, self._base, self._part, size, size
+        scatter_scalar(self._dim, PARTS)(
+            sums, block.strides, block.lower, self._tasks, self._base, self._part, size
         )
-        sums = np.ascontiguousarray(pairs[:, 0])
         block.fold(sums)
         filling = block.crowded(sums)
         block.fill(filling)

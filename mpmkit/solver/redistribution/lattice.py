@@ -7,7 +7,7 @@ import numpy as np
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
 from ...kernels.gather import gather_scalar
-from ...kernels.scatter import PAIR, scatter_pairs
+from ...kernels.scatter import scatter_scalar
 from ...kernels.splines import SUPPORT, fill_splines, gather_slope
 from .mirrored import Mirrored, require_field
 
@@ -20,29 +20,38 @@ class SplineLattice:
         tasks: of the sorted particles, for sums in parallel.
         position: ``(n, dim)``, m.
         size: ``(n,)``, area or volume of each particle.
+        base, weight: ``(n, dim)`` integers and ``(n, dim, 3)``, memory for the splines.
     """
 
-    def __init__(self, block: Mirrored, tasks: np.ndarray, position: np.ndarray, size: np.ndarray) -> None:
-        n, dim = position.shape
+    def __init__(
+        self,
+        block: Mirrored,
+        tasks: np.ndarray,
+        position: np.ndarray,
+        size: np.ndarray,
+        base: np.ndarray,
+        weight: np.ndarray,
+    ) -> None:
         self.block = block
         self.spacing = block.spacing
         self._tasks, self._size = tasks, size
-        self._base = np.empty((n, dim), dtype=np.int32)
-        self._weight = np.empty((n, dim, SUPPORT))
+        self._base, self._weight = base, weight
+        self._sums_of_size: np.ndarray | None = None
         fill_splines(position, 1 / block.spacing, self._base, self._weight)
 
     def crowding(self) -> np.ndarray:
-        crowding = self.block.crowded(self._sums(self._size, self._size)[:, 0])
+        crowding = self.block.crowded(self._of_size())
         self.block.fill(crowding)
         return crowding
 
-    def average(self, values: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:
+    def average(self, values: np.ndarray) -> np.ndarray:
         require_field(values, len(self._base), "particles")
-        values = np.ascontiguousarray(values, dtype=np.float64)
-        sums = self._sums(values, self._size if weight is None else weight)
-        average = np.divide(sums[:, 1], sums[:, 0], out=np.zeros(len(sums)), where=sums[:, 0] > 0)
-        self.block.fill(average)
-        return average
+        return self._over(self._sums(self._size * values), self._of_size())
+
+    def averages(self, vectors: np.ndarray, weight: np.ndarray) -> list[np.ndarray]:
+        """Σ w N f / Σ w N of each component of vectors, ``(n, k)``, with the weights w, ``(n,)``."""
+        total = self._sums(weight)
+        return [self._over(self._sums(weight * along), total) for along in vectors.T]
 
     def at_particles(self, nodal: np.ndarray) -> np.ndarray:
         block, out = self.block, np.empty(len(self._base))
@@ -53,9 +62,8 @@ class SplineLattice:
 
     def slope_at_particles(self, nodal: np.ndarray) -> np.ndarray:
         block, slope = self.block, np.empty(self._base.shape)
-        field = block.field(nodal)[:, 0]
         gather_slope(self._dim)(
-            field, block.strides, block.lower, self._base, self._weight, 1 / block.spacing, slope
+            block.field(nodal), block.strides, block.lower, self._base, self._weight, 1 / block.spacing, slope
         )
         return slope
 
@@ -80,11 +88,24 @@ class SplineLattice:
     def _dim(self) -> int:
         return self._base.shape[1]
 
-    def _sums(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Σ w N and Σ w N f of every node, ``(nodes, 2)``, with the sums on ghosts folded in."""
-        block, pairs = self.block, self.block.empty(PAIR)
-        scatter_pairs(self._dim, SUPPORT)(
-            pairs, block.strides, block.lower, self._tasks, self._base, self._weight, weight, values
+    def _sums(self, amount: np.ndarray) -> np.ndarray:
+        """Σ N amount of every node, ``(nodes,)``, with the sums on ghosts folded in."""
+        block = self.block
+        sums = block.empty()[:, 0]
+        scatter_scalar(self._dim, SUPPORT)(
+            sums, block.strides, block.lower, self._tasks, self._base, self._weight, amount
         )
-        block.fold(pairs)
-        return pairs
+        block.fold(sums)
+        return sums
+
+    def _of_size(self) -> np.ndarray:
+        """Σ size N of every node."""
+        if self._sums_of_size is None:
+            self._sums_of_size = self._sums(self._size)
+        return self._sums_of_size
+
+    def _over(self, sums: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Sums over weights at the nodes, zero where nothing is, with the ghosts filled."""
+        average = np.divide(sums, weights, out=sums, where=weights > 0)
+        self.block.fill(average)
+        return average

@@ -7,9 +7,10 @@ import numpy as np
 from ...case.model import Scheme
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
-from ...kernels import domains, shifts
+from ...kernels import domains, shifts, sums, volumes
 from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.splines import SUPPORT
 from ...kernels.tensors import shear_rate
 from ...registry import audit
 from ..energies import compressive_energy, kinetic_energy, potential_energy, strain_energy
@@ -25,6 +26,7 @@ from .mirrored import Mirrored
 OVER_MEAN = 2.0
 """The shear rate is limited to this multiple of the largest mean rate since the last redistribution. A flow
 that grows linearly from rest reaches this ratio; an impact after a free flight would reach hundreds."""
+SCALARS = ("shear", "elapsed", "energy", "rate", "expanding")
 AT_A_WALL = 1e-6
 """Distance, in cells, that a shift keeps from a wall."""
 
@@ -44,12 +46,13 @@ class Stage:
         acts: whether the redistribution can ever be due; otherwise shear is not summed up.
         shear: largest ∫ γ̇ dt since the last redistribution, 1.
         elapsed: s, since then.
-        energy: J, energy added by all redistributions so far (negative: removed). It is the sum of the
-            changes
-        of kinetic, strain, compressive and potential energy. Potential energy is that of the history: it has
-        no part along a periodic axis.
+        rate: largest γ̇ in the last step, 1/s.
+        expanding: shear, 1, over which the present expansions still act.
+        energy: J, energy added by all redistributions so far (negative: removed): the work of expansions, and
+            the changes of kinetic, strain, compressive and potential energy at each redistribution.
+            Potential energy is that of the history: it has no part along a periodic axis.
         momentum: N s, ``(dim,)``, momentum added by them. Shifts conserve momentum up to rounding, except at
-        moving walls.
+            moving walls.
     """
 
     nodes: contract.Lattice
@@ -68,7 +71,7 @@ class Stage:
         """``spacing``: m, of particles that come in; used if there are none yet."""
         self.redistribution = scheme.redistribution
         self.acts = redistributes(scheme.redistribution)
-        self.shear = self.elapsed = self.energy = 0.0
+        self.shear = self.elapsed = self.energy = self.rate = self.expanding = 0.0
         self.momentum = np.zeros(grid.dim)
         self._blocks: dict[tuple, Mirrored] = {}
         self._downwards = np.where(grid.periodic, 0.0, gravity)
@@ -78,12 +81,11 @@ class Stage:
         self._times = max(1, round(grid.cell_size / (self._typical_spacing() if len(particles) else spacing)))
 
     def state(self) -> State:
-        return {name: np.array(getattr(self, name)) for name in ("shear", "elapsed", "energy", "momentum")}
+        return {name: np.array(getattr(self, name)) for name in (*SCALARS, "momentum")}
 
     def restore(self, state: State) -> None:
-        self.shear, self.elapsed, self.energy = (
-            float(state[name]) for name in ("shear", "elapsed", "energy")
-        )
+        for name in SCALARS:
+            setattr(self, name, float(state[name]))
         self.momentum = state["momentum"].copy()
         self._blocks = {}
 
@@ -98,6 +100,24 @@ class Stage:
 
     # --- Every step
 
+    def stretch(self, volumetric_rate: np.ndarray, dt: float) -> None:
+        """Update J and V with the volumetric rate tr L, 1/s, and with the expansions that are due.
+
+        The largest shear rate is that of the step before: the present one is found after the volumes.
+        """
+        p = self._particles
+        shear = min(dt * self.rate, self.expanding)
+        if shear == 0:
+            volumes.stretch(volumetric_rate, dt, p.initial_volume, p.volume_ratio, p.volume)
+            return
+        energy = np.empty(chunk_count(len(p)))
+        volumes.stretch_and_expand(
+            volumetric_rate, dt, p.expansion, shear, p.pressure, p.initial_volume, p.volume_ratio, p.volume,
+            energy,
+        )  # fmt: skip
+        self.expanding -= shear
+        self.energy += float(energy.sum())
+
     def follow(self, dt: float) -> None:
         """Adjust boxes of fluids to their volume if boxes have equal sides, and sum up the shear."""
         most = 0.0
@@ -107,6 +127,7 @@ class Stage:
             rates = (shear_rate(self._particles.velocity_gradient[part]) for part in self._fluids())
             most = max((float(rate.max()) for rate in rates), default=0.0)
         if self.acts:
+            self.rate = most
             self.shear += dt * most
             self.elapsed += dt
 
@@ -120,15 +141,26 @@ class Stage:
         )  # fmt: skip
         return float(largest.max(initial=0.0))
 
+    def lend(self, base: np.ndarray, tables: np.ndarray) -> None:
+        """Memory that a redistribution may overwrite: ``(n, dim)`` integers of 32 bits, and doubles."""
+        self._lent = base, tables
+
     def redistribute_if_due(self, window: Window, sorting: Sorting) -> bool:
-        """Redistribute if the summed shear requires it; return whether it did. Particles must be sorted."""
+        """Redistribute if the summed shear requires it; return whether it did. Particles must be sorted.
+
+        The tables of the last step are overwritten.
+        """
         author = self.redistribution
         if not self.acts or not audit.require_truth(author, "is_due", author.is_due(self.shear)):
             return False
         position, size = self._particles.position, np.ascontiguousarray(self._sizes())
         self._window, self._tasks = window, sorting.tasks
-        self._splines = self.nodes = self._lattice(1, position, size)
-        self.places = self._lattice(self._times, position, size)
+        base, memory = self._lent
+        needed = 2 * SUPPORT * position.size
+        memory = memory[:needed] if len(memory) >= needed else np.empty(needed)
+        weights = memory.reshape(2, *position.shape, SUPPORT)
+        self._splines = self.nodes = self._lattice(1, position, size, base, weights[0])
+        self.places = self._lattice(self._times, position, size, np.empty_like(base), weights[1])
         before, momentum = self._energy_of_particles(), self._momentum_of_particles()
         author.redistribute(self, self.elapsed)
         self.energy += self._energy_of_particles() - before
@@ -143,10 +175,11 @@ class Stage:
         return kinetic_energy(p) + stored + potential_energy(p, self._downwards)
 
     def _momentum_of_particles(self) -> np.ndarray:
-        return (self._particles.mass[:, None] * self._particles.velocity).sum(axis=0)
+        p = self._particles
+        return np.array([sums.moment(p.mass, p.velocity, along) for along in np.eye(p.dim)])
 
-    def _lattice(self, times: int, position: np.ndarray, size: np.ndarray) -> SplineLattice:
-        return SplineLattice(self._block(times, centred=False), self._tasks, position, size)
+    def _lattice(self, times: int, *arrays: np.ndarray) -> SplineLattice:
+        return SplineLattice(self._block(times, centred=False), self._tasks, *arrays)
 
     def _block(self, times: int, centred: bool) -> Mirrored:
         """The block over the window, kept for as long as the window stays where it is."""
@@ -195,6 +228,13 @@ class Stage:
             p.volume_ratio[part] *= factor[part]
             p.volume[part] = p.initial_volume[part] * p.volume_ratio[part]
 
+    def expand(self, strain: np.ndarray) -> None:
+        p = self._particles
+        self._require(strain, "a strain of volume", (len(p),))
+        for part in self._fluids():
+            p.expansion[part] = strain[part] / self.shear
+        self.expanding = self.shear
+
     def shift(self, displacement: np.ndarray) -> None:
         p = self._particles
         self._require(displacement, "a displacement", p.position.shape)
@@ -204,11 +244,9 @@ class Stage:
         for part in self._fluids():
             shifts.shift(p.position[part], displacement[part], low, high, p.affine[part], change[part])
         if p.affine.shape[1]:
-            for axis in range(p.dim):
-                along = np.ascontiguousarray(change[:, axis])
-                # Momentum added to a node is taken from its neighbours, so that the sum is conserved.
-                taken = self._splines.at_particles(self._splines.average(along, p.mass))
-                p.velocity[:, axis] += along - taken
+            # Momentum added to a node is taken from its neighbours, so that the sum is conserved.
+            for axis, average in enumerate(self._splines.averages(change, p.mass)):
+                p.velocity[:, axis] += change[:, axis] - self._splines.at_particles(average)
 
     def _kept_inside(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest positions, m, along each axis: off the walls, and not out of an open face; only

@@ -15,7 +15,7 @@ from .vectors import wrong_length
 class GravityTable(BodyForce):
     """Gravity by a table in time: linear between the times, constant before the first and after the last.
 
-    It is gravity as a plane sees it that is tilted slowly.
+    This is gravity relative to a plane that is tilted slowly.
     """
 
     name = "gravity-table"

@@ -17,7 +17,8 @@ class MovingFrame(BodyForce):
     """The grid, its faces and walls move as a whole, with a velocity w by a table; the material feels -dw/dt.
 
     The velocity is linear between the times, and constant before the first and after the last. Lengths and
-    velocities of the scene are relative to the frame. A stop gives its whole impulse, however short it is.
+    velocities of the scene are relative to the frame. A sudden stop gives its whole impulse, also if it is
+    shorter than a time step.
     """
 
     name = "moving-frame"
@@ -31,7 +32,10 @@ class MovingFrame(BodyForce):
     )
     period: float | None = quantity("s", "the table is repeated after it; default: never", default=None, gt=0)
     count: float | None = quantity(
-        "1", "how often the table is run through, a whole number; default: to the end", default=None, ge=1
+        "1",
+        "number of passes through the table; default: until the end of the run",
+        default=None,
+        ge=1,
     )
 
     @model_validator(mode="after")

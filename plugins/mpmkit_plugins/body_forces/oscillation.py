@@ -1,4 +1,4 @@
-"""A scene in a mould that is vibrated."""
+"""A scene in a vibrated mould."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from .vectors import wrong_length
 class TurningGravity(BodyForce):
     """Gravity that turns about an axis, g(t) = Q(rate (t - start)) vector, from start to end.
 
-    Scenes in an apparatus that is tilted see gravity turn the other way round. In 3-D it turns by the
+    Relative to an apparatus that is tilted, gravity turns in the opposite direction. In 3-D it turns by the
     right-hand rule about ``axis``. In plane strain a positive rate turns x towards z.
     """
 

@@ -1,1 +1,1 @@
-"""What is measured of a scene."""
+"""Diagnostics: quantities measured in a scene."""

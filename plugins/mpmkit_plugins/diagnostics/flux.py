@@ -10,7 +10,8 @@ from mpmkit.contracts import Column, Diagnostic, Observed, Space, hookimpl, quan
 
 
 class Flux(Diagnostic):
-    """What goes through a plane, positive along its axis: Σ m v_n part/Δx, and Σ V v_n part/Δx.
+    """Mass and volume that pass a plane per time, positive along its axis: Σ m v_n part/Δx, and Σ V v_n
+    part/Δx.
 
     The part of a particle's box counts that lies within half a cell Δx of the plane. So boxes that fill the
     room and move alike give ρ A v to rounding. Along r the plane is a cylinder around the axis.
@@ -21,7 +22,7 @@ class Flux(Diagnostic):
     citation = "none: the definition of a flux"
 
     axis: str = quantity("1", "axis to which the plane is normal, such as z")
-    at: float = quantity("m", "where it cuts the axis")
+    at: float = quantity("m", "place of the plane on the axis")
 
     def problem(self, space: Space, walls: Sequence[str]) -> str | None:
         if self.axis in space.axes:

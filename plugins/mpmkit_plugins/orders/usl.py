@@ -13,7 +13,7 @@ class USL(UpdateOrder):
     a, with V the particles' and F <= 1 the filter of mapping to the nodes and back, and not from F (V + dt
     a). With kappa = dt K / rho at the highest mode, lambda² + (kappa - 1) lambda + kappa (F - 1) = 0, stable
     for kappa < 2 / (2 - F), where USF and MUSL have kappa F < 2: 0.57 of the viscous limit and √(4/7) of dx/c
-    inside a body with two particles an axis (F = 1/4). At a free surface, nodes that are nearly empty are
+    inside a body with two particles per axis (F = 1/4). At a free surface, nodes that are nearly empty are
     stiffer still, see ``LEAST_WIDTH`` in ``solver/scene.py``. Measured in the worst places of bodies,
     with FLIP and own pressure: 0.40 of dx/c and 0.20 of the viscous limit; with averaged volumes 0.5 to 0.7
     of dx/c.

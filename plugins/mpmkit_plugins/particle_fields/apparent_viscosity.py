@@ -8,7 +8,7 @@ from mpmkit.contracts import Observed, ParticleField, hookimpl
 
 
 class ApparentViscosity(ParticleField):
-    """τ/γ̇ of the present stress and shear rate; not a number where nothing is sheared."""
+    """τ/γ̇ of the present stress and shear rate; ``nan`` where the material is not sheared."""
 
     name = "apparent-viscosity"
     api_version = 2

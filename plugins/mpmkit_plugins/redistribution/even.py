@@ -54,9 +54,7 @@ class Even(Redistribution):
         inside = ops.nodes.least_around(crowding) >= FULL
         rate = ops.nodes.average(ops.shear_rate())
         shift = _shift(ops, crowding, inside, rate, time)
-        ops.scale_volume_ratio(
-            np.exp(-RATE * time * ops.nodes.at_particles(rate * _excess(crowding, inside)))
-        )
+        ops.expand(-RATE * time * ops.nodes.at_particles(rate * _excess(crowding, inside)))
         ops.shift(shift)
         ops.weigh(_weights(ops))
 

@@ -11,7 +11,7 @@ from mpmkit.contracts import Sink, Space, hookimpl, quantity
 
 
 class Box(Sink):
-    """Takes what comes into a box, lower ≤ x ≤ upper along each axis."""
+    """Removes the material that enters a box, lower ≤ x ≤ upper along each axis."""
 
     name = "box"
     api_version = 2

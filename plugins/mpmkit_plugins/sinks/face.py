@@ -11,7 +11,7 @@ from mpmkit.contracts import Sink, Space, hookimpl, quantity
 
 
 class Face(Sink):
-    """Takes what is beyond an open face of the grid."""
+    """Removes the material that has left through an open face of the grid."""
 
     name = "face"
     api_version = 2

@@ -66,7 +66,7 @@ def course_of(lines: list[str], section: float) -> Course:
         elif code != 90:
             raise ValueError(f"gcode.{number} is {line!r}; only G0, G1, G90 and G92 E are known")
     if len(places) < 2:
-        raise ValueError("gcode has no way from one place to another; its first line must give X, Y and Z")
+        raise ValueError("gcode has no move from one place to another; its first line must give X, Y and Z")
     return Course(tuple(times), tuple(map(tuple, places)), tuple(volumes))
 
 

@@ -5,8 +5,8 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from mpmkit.contracts import Space, Surface, hookimpl, quantity
-from mpmkit.geometry import AnyShape, Inverted, MovingSolid
+from mpmkit.contracts import AnyShape, Space, Surface, hookimpl, quantity
+from mpmkit.geometry import Inverted, MovingSolid, Solid
 
 from .rigid import LARGEST, RigidSurface
 
@@ -42,10 +42,8 @@ class BodySurface(RigidSurface):
     def problem(self, space: Space) -> str | None:
         if reason := super().problem(space):
             return reason
-        try:
-            self.shape.check(space)
-        except ValueError as error:
-            return str(error)
+        if reason := self.shape.problem(space):
+            return reason
         if self.side == "outside" and self.thickness is not None:
             return (
                 f"thickness is {self.thickness:g} m, but with side 'outside' the wall is solid: leave it out"
@@ -56,9 +54,9 @@ class BodySurface(RigidSurface):
             if reason := self._cannot_open(space):
                 return reason
         if self.thickness is not None:
-            hull = self.shape.shell(space, self.thickness, self.open).hull()
+            hull = self._shell(space, self.thickness).hull()
             if hull is not None and np.abs(hull[0]).max() > LARGEST:
-                return f"the {self.shape.kind} is so flat that a shell of it has no end"
+                return f"the {self.shape.name} is so flat that a shell of it has no end"
         return None
 
     def _cannot_open(self, space: Space) -> str | None:
@@ -67,21 +65,18 @@ class BodySurface(RigidSurface):
         for end in named:
             if not ends:
                 return (
-                    f"open is {self.open}, but a {self.shape.kind} has no ends that can be open: leave it out"
+                    f"open is {self.open}, but a {self.shape.name} has no ends that can be open: leave it out"
                 )
             if end not in ends:
-                return f"open is {self.open}; of this {self.shape.kind} {allowed} can be open"
-        if set(named) == set(ends) and self.shape.kind == "box":
+                return f"open is {self.open}; of this {self.shape.name} {allowed} can be open"
+        if set(named) == set(ends) and self.shape.shell_needs_an_end:
             return f"open is {self.open}, which leaves no wall: one face must stay closed"
         return None
 
     def cautions(self, case: Any) -> list[str]:
         """Of faces that meet in an inner edge a node knows the nearest, unless the shape has parts."""
-        if self.shape.kind == "mesh" and self.side == "inside":
-            what = "a mesh"
-        elif self.shape.kind == "polygon" and not self.shape.convex:
-            what = "a polygon with a corner that points inwards"
-        else:
+        what = self.shape.inner_edges(self.side == "inside")
+        if what is None:
             return []
         return [
             f"walls.{name} is {what}, and contact '{wall.contact.name}' lets material slide in its inner "
@@ -97,7 +92,11 @@ class BodySurface(RigidSurface):
             return self.moving(obstacle, space, obstacle.extent())
         if self.thickness is None:
             return self.moving(Inverted(self.shape.solid(space)), space)
-        return self.moving(self.shape.shell(space, self.thickness, self.open), space, self.thickness)
+        return self.moving(self._shell(space, self.thickness), space, self.thickness)
+
+    def _shell(self, space: Space, thickness: float) -> Solid:
+        open_ends = self.shape.ends_left_open(space) if self.open is None else self.open
+        return self.shape.shell(space, thickness, open_ends)
 
 
 @hookimpl

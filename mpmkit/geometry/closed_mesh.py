@@ -1,108 +1,73 @@
-"""A body given by a closed surface mesh in a file."""
+"""A closed surface of triangles in a file: reading it, what is inside, and how much."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import Field
 
-from ..contracts.base import quantity
 from ..errors import CaseError
 from ..output.content_names import name_by_content
-from ..spaces import Space
-from .base import Shape
 from .crossing import crossing
-from .distance import Solid
-from .distance.surface_mesh import SurfaceMesh
 from .mesh_file import as_ply, read_surface, require_file
 
 
-class Mesh(Shape):
-    """Solid inside a closed surface of triangles or quadrilaterals, x = scale · x_file + translate.
+def surface_in_file(file: str, scale: float, shift: Sequence[float]) -> tuple[Any, str]:
+    """The surface as a ``trimesh.Trimesh``, x = scale · x_file + shift, m, normals outwards, and the name of
+    a copy of the file, made from its content.
 
-    Only in 3-D; needs libigl and trimesh. Normals that point inwards are turned; a shell within another is a
-    cavity. Shells that overlap and surfaces that cross themselves are refused, and so is a file of more than
-    1 GiB.
+    Raises:
+        CaseError: libigl or trimesh is missing, or the file cannot be used; one sentence says why.
     """
+    path = Path(file).absolute()
+    changed = require_file(str(path), file).st_mtime_ns
+    # The time of change is part of the key, so that a process that rewrites a mesh reads the new one.
+    return _load(str(path), changed, file, scale, tuple(shift))
 
-    kind: Literal["mesh"]
-    file: str = Field(
-        description="path to a closed surface mesh (STL, OBJ, PLY, or what meshio reads: VTU, ...) of at "
-        "most 1 GiB; a relative one starts from the folder of the case file"
-    )
-    scale: float = quantity("1", "factor from the file's unit to metres, 0.001 for mm", default=1.0, gt=0)
-    translate: list[float] | None = quantity(
-        "m", "shift after scaling; default: none", default=None, min_length=3, max_length=3
-    )
 
-    tolerance = 1e-6  # the file may hold its corners in single precision
-    files = ("file",)
+def problem_of_file(file: str, scale: float, shift: Sequence[float]) -> str | None:
+    """The sentence about a file of a surface that cannot be used, or None."""
+    try:
+        surface_in_file(file, scale, shift)
+    except CaseError as error:
+        return str(error)
+    return None
 
-    def content(self, field: str) -> bytes:
-        return as_ply(*read_surface(str(Path(self.file).absolute()), self.file))
 
-    def content_name(self, field: str) -> str:
-        return self._loaded()[1]
+def copy_of_file(file: str) -> bytes:
+    """The surface in a file as the content of a PLY file, which needs no other file.
 
-    def _surface(self) -> Any:
-        return self._loaded()[0]
+    Raises:
+        CaseError: the file cannot be read.
+    """
+    return as_ply(*read_surface(str(Path(file).absolute()), file))
 
-    def _loaded(self) -> tuple[Any, str]:
-        path = Path(self.file).absolute()
-        changed = require_file(str(path), self.file).st_mtime_ns
-        shift = (0.0, 0.0, 0.0) if self.translate is None else tuple(self.translate)
-        # The time of change is part of the key, so that a process that rewrites a mesh reads the new one.
-        return _load(str(path), changed, self.file, self.scale, shift)
 
-    def _problem(self, space: Space) -> str | None:
-        if space.dim != 3:
-            return (
-                f"the mesh's file is {self.file}, but the space is {space.name}: a mesh is allowed only in 3d"
-            )
-        try:
-            self._surface()
-        except CaseError as error:
-            return str(error)
-        return None
+def inside_surface(surface: Any, points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether points, m, (n, 3), are inside a surface or at most a tolerance, m, from it; bool, (n,)."""
+    import igl
 
-    def _solid(self, space: Space) -> Solid:
-        surface = self._surface()
-        return SurfaceMesh(np.ascontiguousarray(surface.vertices), np.ascontiguousarray(surface.faces))
+    # From the middle of the surface, because the winding number is computed in single precision: it is then
+    # in doubt only within about 1e-7 of the extent from the surface, where the distance decides.
+    middle = surface.bounds.mean(axis=0)
+    vertices, faces = surface.vertices - middle, np.asarray(surface.faces)
+    points = points - middle
+    inside = igl.fast_winding_number(vertices, faces, points) > 0.5
+    unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
+    distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
+    return inside | (distance <= tolerance)  # farther away the distance is NaN
 
-    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
-        lower, upper = self._surface().bounds.tolist()
-        return lower, upper
 
-    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
-        import igl
-
-        surface = self._surface()
-        # From the middle of the surface, because the winding number is computed in single precision: it is
-        # then in doubt only within about 1e-7 of the extent from the surface, where the distance decides.
-        middle = surface.bounds.mean(axis=0)
-        vertices, faces = surface.vertices - middle, np.asarray(surface.faces)
-        points = points - middle
-        inside = igl.fast_winding_number(vertices, faces, points) > 0.5
-        unsigned = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_UNSIGNED
-        distance = igl.signed_distance(points, vertices, faces, unsigned, 0, tolerance)[0]
-        return inside | (distance <= tolerance)  # farther away the distance is NaN
-
-    def _size(self, space: Space) -> float:
-        return self._volume(space)
-
-    def _volume(self, space: Space) -> float:
-        return float(self._surface().volume)
-
-    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
-        surface = self._surface()
-        part = np.asarray(surface.vertices), np.asarray(surface.faces)
-        for axis in (1, 2):
-            part = _beyond(part, axis, lower[axis], 1)
-            part = _beyond(part, axis, upper[axis], -1)
-        return _volume_beyond(part, lower[0]) - _volume_beyond(part, upper[0])
+def volume_in_surface(surface: Any, lower: np.ndarray, upper: np.ndarray) -> float:
+    """Volume, m³, of the part of the solid in a surface that is between two corners, m, (3,)."""
+    part = np.asarray(surface.vertices), np.asarray(surface.faces)
+    for axis in (1, 2):
+        part = _beyond(part, axis, lower[axis], 1)
+        part = _beyond(part, axis, upper[axis], -1)
+    return _volume_beyond(part, lower[0]) - _volume_beyond(part, upper[0])
 
 
 def _beyond(
@@ -132,11 +97,7 @@ def _volume_beyond(surface: tuple[np.ndarray, np.ndarray], x: float) -> float:
 
 @lru_cache(maxsize=8)
 def _load(path: str, changed: int, shown: str, scale: float, shift: tuple[float, ...]) -> tuple[Any, str]:
-    """The surface as a ``trimesh.Trimesh``, in metres, normals outwards, and the name from the file's
-    content.
-
-    ``shown`` names it in errors.
-    """
+    """See ``surface_in_file``; ``shown`` names the file in errors."""
     try:
         import igl  # noqa: F401
         import trimesh

@@ -4,29 +4,29 @@ from __future__ import annotations
 
 import math
 from itertools import combinations, pairwise
-from typing import Literal
 
 import numpy as np
 from pydantic import model_validator
 
-from ..contracts.base import quantity
-from ..spaces import Space
-from .base import Shape
-from .distance import Extruded, Section, Solid
+from mpmkit.contracts import BodyShape, Space, hookimpl, quantity
+from mpmkit.geometry import Extruded, Section, Solid
 
 Corners = list[tuple[float, float]]
 _FLAT = 1e-9
 """Area, relative to that of the box around it, below which a polygon has no inside."""
 
 
-class Polygon(Shape):
+class Polygon(BodyShape):
     """The region inside a closed line of straight edges, in the plane of the first and the last axis.
 
     In 3-D it is a prism, V = A (y₁ − y₀); in plane strain 1 m thick; in an axisymmetric scene the corners are
     (r, z), and V = 2π A r̄ with r̄ the radius of the centroid (Pappus).
     """
 
-    kind: Literal["polygon"]
+    name = "polygon"
+    api_version = 2
+    citation = "none: elementary geometry"
+
     corners: list[list[float]] = quantity(
         "m",
         "its corners in order, each a pair of coordinates along the first and the last axis, such as "
@@ -56,11 +56,10 @@ class Polygon(Shape):
             raise ValueError(f"y is {self.y}; the first number must be below the second")
         return self
 
-    @property
-    def convex(self) -> bool:
-        """Whether no corner points inwards."""
+    def inner_edges(self, inside: bool) -> str | None:
         turns = [_turn(a, b, c) for a, b, c in zip(*(self._from(k) for k in range(3)), strict=True)]
-        return min(turns) >= 0 or max(turns) <= 0
+        convex = min(turns) >= 0 or max(turns) <= 0
+        return None if convex else "a polygon with a corner that points inwards"
 
     @property
     def _loop(self) -> Corners:
@@ -69,8 +68,10 @@ class Polygon(Shape):
     def _from(self, k: int) -> Corners:
         return self._loop[k:] + self._loop[:k]
 
-    def _middle(self) -> tuple[float, float] | None:
+    def middle(self, space: Space) -> tuple[float, float] | None:
         """None if the polygon is not symmetric about the vertical through its middle."""
+        if space.dim == 2:
+            return None
         x = [a for a, _ in self.corners]
         across = min(x) + max(x)
         mirrored = sorted((across - a, b) for a, b in self.corners)
@@ -78,7 +79,7 @@ class Polygon(Shape):
         same = np.abs(np.array(mirrored) - sorted(self._loop)).max() <= near
         return (across / 2, sum(self.y or ()) / 2) if same else None
 
-    def _problem(self, space: Space) -> str | None:
+    def problem(self, space: Space) -> str | None:
         if (space.dim == 3) != (self.y is not None):
             needs = "needs y, where it begins and ends" if space.dim == 3 else "has no y: leave it out"
             return f"the polygon's y is {self.y}, but in the space {space.name} it {needs}"
@@ -89,7 +90,7 @@ class Polygon(Shape):
             )
         return None
 
-    def _solid(self, space: Space) -> Solid:
+    def solid(self, space: Space) -> Solid:
         section = self._section(space)
         return section if self.y is None else Extruded(section, *self.y)
 
@@ -102,22 +103,22 @@ class Polygon(Shape):
             start, end = np.concatenate([start, end * mirror]), np.concatenate([end, start * mirror])
         return Section(start, end)
 
-    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
-        (a0, b0), (a1, b1) = np.min(self.corners, axis=0), np.max(self.corners, axis=0)
+    def bounds(self, space: Space) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = np.min(self.corners, axis=0), np.max(self.corners, axis=0)
         if self.y is None:
-            return [a0, b0], [a1, b1]
-        return [a0, self.y[0], b0], [a1, self.y[1], b1]
+            return lower, upper
+        return np.insert(lower, 1, self.y[0]), np.insert(upper, 1, self.y[1])
 
-    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
-        return self._solid(space).distance(points)[0] <= tolerance
+    def signed_distance(self, x: np.ndarray, space: Space) -> np.ndarray:
+        return self.solid(space).distance(x)[0]
 
-    def _size(self, space: Space) -> float:
+    def size(self, space: Space) -> float:
         return self._thickness() * abs(_area(self._loop))
 
-    def _volume(self, space: Space) -> float:
+    def volume(self, space: Space) -> float:
         return self._thickness() * _volume(self._loop, space)
 
-    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+    def volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
         part = self._loop
         for axis in (0, 1):
             part = _cut(_cut(part, axis, lower[-axis], 1.0), axis, upper[-axis], -1.0)
@@ -169,3 +170,8 @@ def _cut(loop: Corners, axis: int, at: float, side: float) -> Corners:
             part = from_a / (from_a - from_b)
             found.append((a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])))
     return found
+
+
+@hookimpl
+def mpmkit_body_shapes() -> list[type[BodyShape]]:
+    return [Polygon]

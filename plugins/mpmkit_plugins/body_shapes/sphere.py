@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
 
 import numpy as np
 from pydantic import model_validator
 
-from ..contracts.base import quantity
-from ..spaces import Space
-from .base import Shape, disc_area, squared_distance
-from .distance import Ball, Solid
-from .revolved import part_of_revolved
+from mpmkit.contracts import BodyShape, Space, hookimpl, quantity
+from mpmkit.geometry import Ball, Solid, part_of_revolved
+
+from .lengths import off_axis, squared_distance, wrong_length
 
 
-class Sphere(Shape):
+class Sphere(BodyShape):
     """Sphere, V = 4/3 π (R³ − R_i³); a disc or a ring in plane strain. In an axisymmetric scene its centre is
     [0, z]."""
 
-    kind: Literal["sphere"]
+    name = "sphere"
+    api_version = 2
+    citation = "none: elementary geometry"
+
     centre: list[float] = quantity("m", "centre", min_length=2, max_length=3)
     radius: float = quantity("m", "radius", gt=0)
     inner_radius: float = quantity("m", "radius of a hollow in its middle; default: none", default=0.0, ge=0)
@@ -36,40 +37,44 @@ class Sphere(Shape):
     def _radii(self) -> tuple[float, ...]:
         return (self.radius, self.inner_radius) if self.inner_radius else (self.radius,)
 
-    def _middle(self) -> tuple[float, float]:
-        return self.centre[0], self.centre[1]
+    def middle(self, space: Space) -> tuple[float, float] | None:
+        return (self.centre[0], self.centre[1]) if space.dim == 3 else None
 
-    def _problem(self, space: Space) -> str | None:
-        return self._wrong_length("centre", self.centre, space) or self._off_axis(
-            "centre", self.centre, space
-        )
+    def problem(self, space: Space) -> str | None:
+        given = (self, "centre", self.centre, space)
+        return wrong_length(*given) or off_axis(*given)
 
-    def _solid(self, space: Space) -> Solid:
+    def solid(self, space: Space) -> Solid:
         return Ball(np.array(self.centre, dtype=float), self.radius, self.inner_radius)
 
-    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
-        lower = [x - self.radius for x in self.centre]
-        return [0.0, *lower[1:]] if space.radial else lower, [x + self.radius for x in self.centre]
+    def bounds(self, space: Space) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
+        if space.radial:
+            lower[0] = 0.0
+        return lower, upper
 
-    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
-        square = squared_distance(points, self.centre)
+    def signed_distance(self, x: np.ndarray, space: Space) -> np.ndarray:
+        return self.solid(space).distance(x)[0]
+
+    def within(self, x: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
+        square = squared_distance(x, self.centre)
         within = max(self.inner_radius - tolerance, 0.0)
         return (square <= (self.radius + tolerance) ** 2) & (square >= within**2)
 
-    def _size(self, space: Space) -> float:
+    def size(self, space: Space) -> float:
         if space.dim == 3:
-            return self._volume(space)
+            return self.volume(space)
         return self._ring() / (2 if space.radial else 1)
 
-    def _volume(self, space: Space) -> float:
+    def volume(self, space: Space) -> float:
         if space.dim == 2 and not space.radial:
             return self._ring()
         return 4 / 3 * math.pi * (self.radius**3 - self.inner_radius**3)
 
     def _ring(self) -> float:
-        return disc_area(self.radius) - disc_area(self.inner_radius)
+        return math.pi * (self.radius**2 - self.inner_radius**2)
 
-    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+    def volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
         outer, *inner = (self._part(radius, lower, upper, space) for radius in self._radii)
         return outer - sum(inner)
 
@@ -89,3 +94,8 @@ class Sphere(Shape):
         if low[-1] >= high[-1]:
             return 0.0
         return part_of_revolved(radius, heights, middle, low, high, space)
+
+
+@hookimpl
+def mpmkit_body_shapes() -> list[type[BodyShape]]:
+    return [Sphere]

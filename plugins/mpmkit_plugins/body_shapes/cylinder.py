@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from mpmkit.contracts import BodyShape, hookimpl, quantity
 
-from ..contracts.base import quantity
 from .upright import Upright
 
 
@@ -14,8 +13,16 @@ class Cylinder(Upright):
     In an axisymmetric scene its base is [0, z].
     """
 
-    kind: Literal["cylinder"]
+    name = "cylinder"
+    api_version = 2
+    citation = "none: elementary geometry"
+
     radius: float = quantity("m", "radius", gt=0)
 
     def _radii(self) -> tuple[float, float]:
         return self.radius, self.radius
+
+
+@hookimpl
+def mpmkit_body_shapes() -> list[type[BodyShape]]:
+    return [Cylinder]

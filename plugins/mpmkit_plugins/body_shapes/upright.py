@@ -8,15 +8,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..contracts.base import quantity
-from ..spaces import Space
-from .base import Shape, squared_distance
-from .distance import Jointed, Revolved, Section, Solid, trapezium, trapezium_plates, trapezium_shell
-from .distance.section import Loop
-from .revolved import part_of_revolved
+from mpmkit.contracts import BodyShape, Space, quantity
+from mpmkit.geometry import (
+    Jointed,
+    Revolved,
+    Section,
+    Solid,
+    part_of_revolved,
+    trapezium,
+    trapezium_plates,
+    trapezium_shell,
+)
+
+from .lengths import off_axis, squared_distance, wrong_length
+
+Loop = list[tuple[float, float]]
 
 
-class Upright(Shape):
+class Upright(BodyShape):
     """R(z) = R_b + (R_t − R_b)(z − z_b)/h along the last axis; what frustum and cylinder share.
 
     Volume π h (R_b² + R_b R_t + R_t²)/3; in plane strain (R_b + R_t) h · 1 m.
@@ -36,15 +45,17 @@ class Upright(Shape):
 
     turned = True
 
-    def _middle(self) -> tuple[float, float]:
+    def middle(self, space: Space) -> tuple[float, float] | None:
+        if space.dim == 2:
+            return None
         x, y = (self.base or [0.0, 0.0])[:2]
         return x, y
 
-    def _problem(self, space: Space) -> str | None:
-        foot = self._foot(space)
-        return self._wrong_length("base", foot, space) or self._off_axis("base", foot, space)
+    def problem(self, space: Space) -> str | None:
+        given = (self, "base", self._foot(space), space)
+        return wrong_length(*given) or off_axis(*given)
 
-    def _solid(self, space: Space) -> Solid:
+    def solid(self, space: Space) -> Solid:
         return self._turned(trapezium(*self._radii(), self.height), space)
 
     def ends(self, space: Space) -> tuple[str, ...]:
@@ -57,7 +68,7 @@ class Upright(Shape):
         """A mould has neither a floor nor a lid."""
         return self.ends(space)
 
-    def _shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
+    def shell(self, space: Space, thickness: float, open_ends: Sequence[str]) -> Solid:
         shell = *self._radii(), self.height, thickness, open_ends
         plates = [self._turned(loops, space) for loops in trapezium_plates(*shell)]
         return Jointed(self._turned(trapezium_shell(*shell), space), tuple(plates))
@@ -69,18 +80,22 @@ class Upright(Shape):
             return Revolved(Section.of(loops, (0.0, foot)), np.array(middle, dtype=float))
         return Section.of(loops, (middle[0], foot))
 
-    def _bounds(self, space: Space) -> tuple[list[float], list[float]]:
+    def bounds(self, space: Space) -> tuple[np.ndarray, np.ndarray]:
         *middle, bottom = self._foot(space)
         radius = max(self._radii())
         lower = [0.0] if space.radial else [x - radius for x in middle]
-        return [*lower, bottom], [*(x + radius for x in middle), bottom + self.height]
+        upper = [*(x + radius for x in middle), bottom + self.height]
+        return np.array([*lower, bottom]), np.array(upper)
 
-    def _contains(self, points: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
+    def signed_distance(self, x: np.ndarray, space: Space) -> np.ndarray:
+        return self.solid(space).distance(x)[0]
+
+    def within(self, x: np.ndarray, space: Space, tolerance: float) -> np.ndarray:
         *middle, bottom = self._foot(space)
-        level = points[:, -1] - bottom
+        level = x[:, -1] - bottom
         inside = (level >= -tolerance) & (level <= self.height + tolerance)
         radius = self._radius(level) + tolerance
-        return inside & (squared_distance(points, middle) <= radius * radius)
+        return inside & (squared_distance(x, middle) <= radius * radius)
 
     def _radius(self, level: np.ndarray) -> np.ndarray:
         """Radius, m, at heights above the bottom, m."""
@@ -88,19 +103,19 @@ class Upright(Shape):
         # Above the tip of a full cone, within the tolerance, the radius would be negative.
         return np.maximum(bottom + (top - bottom) / self.height * level, 0.0)
 
-    def _size(self, space: Space) -> float:
+    def size(self, space: Space) -> float:
         if space.dim == 3:
-            return self._volume(space)
+            return self.volume(space)
         width = sum(self._radii())
         return width * self.height / (2 if space.radial else 1)
 
-    def _volume(self, space: Space) -> float:
+    def volume(self, space: Space) -> float:
         if space.dim == 2 and not space.radial:
-            return self._size(space)
+            return self.size(space)
         bottom, top = self._radii()
         return math.pi * self.height / 3 * (bottom**2 + bottom * top + top**2)
 
-    def _volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
+    def volume_between(self, lower: np.ndarray, upper: np.ndarray, space: Space) -> float:
         *middle, foot = self._foot(space)
         bottom, top = self._radii()
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from pydantic import model_validator
 
-from ..contracts.base import quantity
+from mpmkit.contracts import BodyShape, hookimpl, quantity
+
 from .upright import Upright
 
 
@@ -16,7 +15,10 @@ class Frustum(Upright):
     Either radius may be 0 (a full cone), not both. In an axisymmetric scene its base is [0, z].
     """
 
-    kind: Literal["frustum"]
+    name = "frustum"
+    api_version = 2
+    citation = "none: elementary geometry"
+
     bottom_radius: float = quantity("m", "radius of the bottom disc", ge=0)
     top_radius: float = quantity("m", "radius of the top disc", ge=0)
 
@@ -28,3 +30,8 @@ class Frustum(Upright):
 
     def _radii(self) -> tuple[float, float]:
         return self.bottom_radius, self.top_radius
+
+
+@hookimpl
+def mpmkit_body_shapes() -> list[type[BodyShape]]:
+    return [Frustum]
