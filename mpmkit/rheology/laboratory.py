@@ -17,7 +17,7 @@ from .deposits import (
     drop_spread,
     slope_length,
 )
-from .funnels import Sections, flow_time, rectangles
+from .funnels import SLICES, Sections, circles, flow, flow_time, rectangles
 from .rotation import coaxial_torque, cylinder_torque
 from .tubes import tube_gradient
 
@@ -135,6 +135,15 @@ def _v_funnel(p: Given) -> float:
     return flow_time(straight + slanted, volume, sections, *_fluid(p))
 
 
+def _marsh_cone(p: Given) -> float:
+    """Flow out of the full cone, m³/s."""
+    outlet, top, straight = p["nozzle_radius"], p["top_radius"], p["nozzle_length"]
+    head = straight + p["cone_height"]
+    heights = (np.arange(SLICES) + 0.5) * head / SLICES
+    sections = circles(np.interp(heights, [straight, head], [outlet, top]))
+    return flow(head, head / SLICES, sections, _fluid(p))
+
+
 def _fluid(p: Given) -> tuple[float, float, float]:
     return p["density"], p["yield_stress"], p["plastic_viscosity"]
 
@@ -201,6 +210,9 @@ FORMULAS: dict[str, list[Formula]] = {
     ],
     "flow_table": [
         Formula("flow_value", "at most: the yield stress takes all energy of the drops", _flow_table, None)
+    ],
+    "marsh_cone": [
+        Formula("outflow_rate", "full cone, Buckingham & Reiner, with a kinetic head", _marsh_cone, 0.12)
     ],
     "v_funnel": [
         Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",

@@ -157,3 +157,16 @@ def test_a_barrier_holds_what_rests_on_it(validate):
     force = measured("barrier", "force_on_barrier")
     validate("Barrier at rest: force over the least for its depth", force / (weight - stretch), above(0.9))
     validate("Barrier at rest: force over the most for its depth", force / (weight + stretch), below(1.1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("yield_stress", [0.001, 20])
+def test_the_flow_rate_of_a_full_marsh_cone(validate, yield_stress):
+    """Buckingham & Reiner in every section of the full cone, with the kinetic head; 5 Pa is the shipped case.
+
+    The bands are those of the targets for the first litre, whose closed form tests/test_funnels.py holds.
+    """
+    found = measured("marsh_cone", "outflow_rate", f"parameters.yield_stress={yield_stress}")
+    (formula,) = FORMULAS["marsh_cone"]
+    expected = formula.value(given("marsh_cone") | {"yield_stress": yield_stress})
+    validate(f"Marsh cone at {yield_stress:g} Pa: flow rate", found, close_to(expected, rel=formula.band))
