@@ -161,7 +161,7 @@ def test_what_a_law_says_of_itself_cannot_be_used(attribute, value, reason):
             "a state 'x' that starts from [1.0, 2.0]",
         ),
         (StateVariable("1", "x", shape=3), "a state 'x' that has the shape 3; it must be a tuple"),
-        (StateVariable("1", "x", initial="young"), "'young', which is no parameter of the law"),
+        (StateVariable("1", "x", initial="young"), "'young', which is not a parameter of the law"),
         (StateVariable("1", "x", initial=math.nan), "a state 'x' that starts from nan; it must be a finite"),
         ("young", "a state 'x' that is 'young'; it must be a StateVariable"),
     ],

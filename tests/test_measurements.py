@@ -126,7 +126,7 @@ def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
     [
         ("tip", "front(1)", "front takes nothing"),
         ("tip", "depth(0.3)", "depth takes one place along x, from 0 to 0.2 m"),
-        ("tip", "depth('x')", "a name in quotes stands where a number must"),
+        ("tip", "depth('x')", "a number is needed, and not a name in quotes"),
         ("push", "force('lid', 'z')", "force takes the name of a wall ('z_min') and an axis ('x', 'z')"),
         ("gone", "outflow('drain')", "outflow takes the name of a sink (there is none), in quotes"),
         ("mass_out", "front()", "measurements has one called 'mass_out'"),

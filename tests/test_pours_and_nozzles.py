@@ -165,7 +165,7 @@ def gcode(*lines):
     ("changes", "sentence"),
     [
         ({"points": [[0.03, 0.02], [0.3, 0.02]], "speeds": [0.5]}, "its mouth reaches x = 0."),
-        ({"speeds": [0.1, 0.1]}, "speeds has 2 entries; 2 points have 1 ways between them"),
+        ({"speeds": [0.1, 0.1]}, "speeds has 2 entries; 2 points have 1 moves between them"),
         ({"fluxes": [0.0]}, "its path brings in no material: no flux, or no E, is above 0"),
         ({"gcode": GCODE}, "it has points and gcode; it must have one of them"),
         (gcode("G0 X0 Y0 Z20 F60", "G2 X10 Y10"), "only G0, G1, G90 and G92 E are known"),

@@ -91,7 +91,8 @@ def test_a_parameter_that_is_no_number_is_the_plugins_fault():
     [
         (
             StateVariable("s", "age", initial="age"),
-            "its state 'x' starts from 'age', which is no parameter of the law; its parameters: age_at_start",
+            "its state 'x' starts from 'age', which is not a parameter of the law; "
+            "its parameters: age_at_start",
         ),
         (
             StateVariable("1", "pair", (2,), initial=[1, 2, 3]),

@@ -29,7 +29,7 @@ BAD = {
     "no JSON": ('{"case": 1,', "s.json: the study file is not valid JSON: "),
     "an empty file": (" ", "s.json: the study file is empty; it must hold a JSON object"),
     "a list": ("[]", "s.json: a study must be a JSON object"),
-    "a key twice": ('{"case": "a", "case": "b"}', "the key 'case' stands twice"),
+    "a key twice": ('{"case": "a", "case": "b"}', "the key 'case' appears twice"),
     "no case": ({"vary": ORDERS}, "case is missing; it must be the path of a case file, or a case itself"),
     "a number for a case": ({"case": 3, "vary": ORDERS}, "case is 3; it must be the path of a case file"),
     "a case that is not there": (
@@ -218,7 +218,7 @@ def test_vary(options, expected):
         (["a=1,,2"], "--vary a=1,,2: it must read"),
         (["a=1", "a=2"], "--vary a=2: a is varied already; give all its values at once"),
         (["a=1,NaN"], "--vary: NaN: NaN is not a number that a case can have"),
-        (['a={"b": 1, "b": 2}'], "the key 'b' stands twice in one object"),
+        (['a={"b": 1, "b": 2}'], "the key 'b' appears twice in one object"),
     ],
 )
 def test_bad_vary(options, sentence):

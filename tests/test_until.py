@@ -203,7 +203,7 @@ def test_the_time_that_comes_first_is_told(caplog):
     with caplog.at_level(logging.WARNING, logger="mpmkit"):
         history = mpmkit.run(case)
     assert history.attrs["stopped_because"] == "finished"
-    assert "the run has come to until.at_most, 0.02 s, before the material is at rest or" in caplog.text
+    assert "the run has reached until.at_most, 0.02 s, before the material is at rest or" in caplog.text
 
 
 @pytest.mark.parametrize(

@@ -286,8 +286,11 @@ def work(name: str) -> tuple[int, int]:
 
 def first_step(case) -> tuple[int, int]:
     """Steps and particle-steps of a run that goes on with its first step."""
-    groups = [material_group(case, body.material, slice(0, 0)) for body in case.bodies]
-    fastest = max(map(case.speed_at_start, case.bodies))
+    groups = [material_group(case, one.material, slice(0, 0)) for one in case.filled]
+    fastest = max(
+        [*map(case.speed_at_start, case.bodies)]
+        + [case.source_speed(name, 0.0, case.end) for name in case.sources]
+    )
     waves = [(group, group.wave_speed) for group in groups]
     step, _ = choose_step(case.scheme, limits(waves, case.grid.cell_size, fastest, case.scale.rate))
     steps = round(case.end / step)

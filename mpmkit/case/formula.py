@@ -105,13 +105,13 @@ def evaluate(
             values = [_argument(argument, names, functions) for argument in arguments]
             if name in FUNCTIONS:
                 if any(isinstance(value, str) for value in values):
-                    raise ValueError("a name in quotes stands where a number must")
+                    raise ValueError("a number is needed, and not a name in quotes")
                 least = COUNT.get(name, 1)
                 if len(values) < least or (len(values) > 1 and name not in COUNT):
                     raise ValueError(f"{name} takes {'two or more numbers' if least > 1 else 'one number'}")
             return _number(functions[name], *values)
     raise ValueError(
-        f"'{ast.unparse(node)}' cannot stand in a formula; it must be made of numbers, names, + - * / ( ) "
+        f"'{ast.unparse(node)}' is not allowed in a formula; it must be made of numbers, names, + - * / ( ) "
         f"and {', '.join(functions)}"
     )
 
@@ -157,7 +157,7 @@ def _number(function: Callable[..., float], *values: Any) -> float:
     except ZeroDivisionError:
         raise NoNumber("it divides by zero") from None
     except TypeError:  # a name in quotes where a number must stand
-        raise ValueError("a name in quotes stands where a number must") from None
+        raise ValueError("a number is needed, and not a name in quotes") from None
     except OverflowError:
         raise NoNumber("it is too large for a number") from None
     if math.isinf(found):

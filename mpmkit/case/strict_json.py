@@ -84,7 +84,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> Any:
     if len(found) < len(pairs):
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
-        return Refused(f"the key '{twice}' stands twice in one object; keep one of them")
+        return Refused(f"the key '{twice}' appears twice in one object; keep one of them")
     return found
 
 

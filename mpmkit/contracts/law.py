@@ -46,7 +46,7 @@ class StateVariable:
             raise ValueError(f"has the shape {self.shape!r}; it must be a tuple of whole numbers")
         named = isinstance(self.initial, str)
         if named and not hasattr(law, self.initial):
-            raise ValueError(f"starts from '{self.initial}', which is no parameter of the law")
+            raise ValueError(f"starts from '{self.initial}', which is not a parameter of the law")
         value = getattr(law, self.initial) if named else self.initial
         try:
             array = np.broadcast_to(np.asarray(value, dtype=float), self.shape)

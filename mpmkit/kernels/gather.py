@@ -48,8 +48,8 @@ def _inverse_moment(weight, p, axis, support, mean, cell_size):
 # 0 to 3 are the terms of the lever, and lanes 4 to 7 those of the gradient, for mass and velocity each.
 _SLOPE = picker(0, 0, 0, 0, 8, 8, 8, 8)
 _TWICE = picker(0, 1, 2, 3, 0, 1, 2, 3)
-_LEVERS_OF_TWO, _AND_THE_THIRD = picker(1, 9, 0, 2, 10, 0, 3, 11), picker(0, 1, 9, 3, 4, 10, 6, 7)
-_GRADIENTS_OF_TWO, _AND_THE_OTHER = picker(5, 13, 0, 6, 14, 0, 7, 15), picker(0, 1, 13, 3, 4, 14, 6, 7)
+_GRADIENT = picker(4, 5, 6, 7, 4, 5, 6, 7)
+_OF_TWO, _AND_THE_THIRD = picker(1, 9, 0, 2, 10, 0, 3, 11), picker(0, 1, 9, 3, 4, 10, 6, 7)
 """A tensor row by row, without its last entry: from the sums along axes 0 and 1, then with that of axis 2."""
 _CHANGE_2D, _CHANGE_3D = picker(0, 3, 4, 0, 0, 0, 0, 0), picker(0, 4, 5, 6, 0, 0, 0, 0)
 """Changes of velocity, moved to the lanes of the velocities."""
@@ -78,22 +78,40 @@ def gather(dim: int, support: int, affine: bool = True):
 
     Args:
         dim, support: number of axes, and of the nodes along each that a shape function touches.
-        affine: whether ``has_affine`` can be true; if not, the lanes of the levers stay empty.
+        affine: whether ``has_affine`` can be true; if not, slopes are gradients alone.
     """
     return _gather_2d(support, affine) if dim == 2 else _gather_3d(support, affine)
 
 
-def _slope_for(affine):
+def _with_slopes(affine):
+    """Functions that make a slope, that read the record and the sum which it multiplies, and that take the
+    gradients out of the result.
+
+    Without an affine part there are no levers: a slope is the gradient, of a whole record.
+    """
+
     @inline()
     def slope(weight, gradient, p, axis, a, mean):
-        lever = (a - mean) * weight[p, axis, a] if affine else 0.0
-        return _SLOPE(spread(lever), spread(gradient[p, axis, a]))
+        of_gradient = spread(gradient[p, axis, a])
+        return _SLOPE(spread((a - mean) * weight[p, axis, a]), of_gradient) if affine else of_gradient
 
-    return slope
+    @inline()
+    def record(nodes, i):
+        return load_twice(nodes, i) if affine else load(nodes, i)
+
+    @inline()
+    def again(total):
+        return _TWICE(total, total) if affine else total
+
+    @inline()
+    def gradients(total):
+        return _GRADIENT(total, total) if affine else total
+
+    return slope, record, again, gradients
 
 
 def _gather_2d(support, keeps_affine):
-    slope = _slope_for(keeps_affine)
+    slope, record, again, gradients = _with_slopes(keeps_affine)
 
     @kernel()
     def gather_2d(
@@ -113,18 +131,19 @@ def _gather_2d(support, keeps_affine):
                     for b in range(support):
                         rv = plus(rv, weight[p, 1, b], load(nodes, row + b * NODE))
                         ry = plus_product(
-                            ry, slope(weight, gradient, p, 1, b, m1), load_twice(nodes, row + b * NODE)
+                            ry, slope(weight, gradient, p, 1, b, m1), record(nodes, row + b * NODE)
                         )
                     v = plus(v, weight[p, 0, a], rv)
-                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), _TWICE(rv, rv))
+                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), again(rv))
                     y = plus(y, weight[p, 0, a], ry)
                     if radial:
                         h = plus(h, hoop[p, a], rv)
                 if strain:
-                    L[p, 0, 0], L[p, 0, 1] = lane(x, 5), lane(y, 5)
-                    L[p, 1, 0], L[p, 1, 1] = lane(x, 6), lane(y, 6)
+                    gx, gy = gradients(x), gradients(y)
+                    L[p, 0, 0], L[p, 0, 1] = lane(gx, 1), lane(gy, 1)
+                    L[p, 1, 0], L[p, 1, 1] = lane(gx, 2), lane(gy, 2)
                     L[p, 2, 2] = lane(h, 1)
-                    rate[p] = lane(x, 5) + lane(y, 6) + lane(h, 1)
+                    rate[p] = lane(gx, 1) + lane(gy, 2) + lane(h, 1)
                 if keeps_affine and has_affine:
                     ax = scale(_inverse_moment(weight, p, 0, support, m0, cell_size), x)
                     ay = scale(_inverse_moment(weight, p, 1, support, m1, cell_size), y)
@@ -141,7 +160,7 @@ def _gather_2d(support, keeps_affine):
 
 
 def _gather_3d(support, keeps_affine):
-    slope = _slope_for(keeps_affine)
+    slope, record, again, gradients = _with_slopes(keeps_affine)
 
     @kernel()
     def gather_3d(
@@ -167,24 +186,25 @@ def _gather_3d(support, keeps_affine):
                         for c in range(support):
                             rv = plus(rv, weight[p, 2, c], load(nodes, row + c * NODE))
                             rz = plus_product(
-                                rz, slope(weight, gradient, p, 2, c, m2), load_twice(nodes, row + c * NODE)
+                                rz, slope(weight, gradient, p, 2, c, m2), record(nodes, row + c * NODE)
                             )
                         pv = plus(pv, weight[p, 1, b], rv)
-                        py = plus_product(py, slope(weight, gradient, p, 1, b, m1), _TWICE(rv, rv))
+                        py = plus_product(py, slope(weight, gradient, p, 1, b, m1), again(rv))
                         pz = plus(pz, weight[p, 1, b], rz)
                     v = plus(v, weight[p, 0, a], pv)
-                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), _TWICE(pv, pv))
+                    x = plus_product(x, slope(weight, gradient, p, 0, a, m0), again(pv))
                     y = plus(y, weight[p, 0, a], py)
                     z = plus(z, weight[p, 0, a], pz)
                 if strain:
-                    store(L, 9 * p, _AND_THE_OTHER(_GRADIENTS_OF_TWO(x, y), z))
-                    L[p, 2, 2] = lane(z, 7)
-                    rate[p] = lane(x, 5) + lane(y, 6) + lane(z, 7)
+                    gx, gy, gz = gradients(x), gradients(y), gradients(z)
+                    store(L, 9 * p, _AND_THE_THIRD(_OF_TWO(gx, gy), gz))
+                    L[p, 2, 2] = lane(gz, 3)
+                    rate[p] = lane(gx, 1) + lane(gy, 2) + lane(gz, 3)
                 if keeps_affine and has_affine:
                     ax = scale(_inverse_moment(weight, p, 0, support, m0, cell_size), x)
                     ay = scale(_inverse_moment(weight, p, 1, support, m1, cell_size), y)
                     az = scale(_inverse_moment(weight, p, 2, support, m2, cell_size), z)
-                    store(affine, 9 * p, _AND_THE_THIRD(_LEVERS_OF_TWO(ax, ay), az))
+                    store(affine, 9 * p, _AND_THE_THIRD(_OF_TWO(ax, ay), az))
                     affine[p, 2, 2] = lane(az, 3)
                 if move:
                     position[p, 0] += dt * lane(v, 1)

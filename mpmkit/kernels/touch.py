@@ -44,24 +44,9 @@ def mark(dim: int, support: int):
     @inline()
     def _reach(
         sums, strides, lower, walls, base, weight, position, velocity, half_size, volume, cell_size, begins,
-        p, a, wall, k, alone,
+        p, a, wall, k,
     ):  # fmt: skip
-        """The share of a particle in the nodes of the wall that is k nodes from its first along axis a.
-
-        ``alone``: whether only axis a has walls. A node that is touched then needs no sum, and a particle
-        whose nodes are all touched changes nothing.
-        """
-        b, c = (a + 1) % dim, (a + 2) % dim  # the axes along the wall; in the plane only the first
-        first = (wall - lower[a]) * strides[a] + (base[p, b] - lower[b]) * strides[b]
-        if dim == 3:
-            first += (base[p, c] - lower[c]) * strides[c]
-        if alone and not begins:
-            every = True
-            for i in range(support):
-                for j in range(planes):
-                    every &= sums[first + i * strides[b] + (j * strides[c] if dim == 3 else 0), 1] != 0.0
-            if every:
-                return
+        """The share of a particle in the nodes of the wall that is k nodes from its first along axis a."""
         V = volume[p] * weight[p, a, k]
         if V == 0.0:
             return
@@ -71,6 +56,10 @@ def mark(dim: int, support: int):
             bits = TOUCHED << a
             if begins and velocity[p, a] == 0.0:
                 bits |= PUSHED << a
+        b, c = (a + 1) % dim, (a + 2) % dim  # the axes along the wall; in the plane only the first
+        first = (wall - lower[a]) * strides[a] + (base[p, b] - lower[b]) * strides[b]
+        if dim == 3:
+            first += (base[p, c] - lower[c]) * strides[c]
         for i in range(support):
             i_counts = b > a or not _on(walls, b, base[p, b] + i)
             for j in range(planes):
@@ -89,10 +78,6 @@ def mark(dim: int, support: int):
         nodes, sums, strides, lower, walls, faces, mirrors, plane_first, tasks, base, weight, position,
         velocity, half_size, volume, room, cell_size, begins,
     ):  # fmt: skip
-        walled = 0
-        for a in range(dim):
-            walled += walls[a, 0] != NOWHERE or walls[a, 1] != NOWHERE
-        alone = walled == 1
         for colour in range(tasks.shape[1]):
             for task in prange(tasks.shape[2] - 1):
                 for g in range(tasks.shape[0]):
@@ -106,7 +91,7 @@ def mark(dim: int, support: int):
                                     if 0 <= k < support:
                                         _reach(
                                             sums, strides, lower, walls, base, weight, position, velocity,
-                                            half_size, volume, cell_size, begins, p, a, wall, k, alone,
+                                            half_size, volume, cell_size, begins, p, a, wall, k,
                                         )  # fmt: skip
         _settle(nodes, sums, faces, mirrors, plane_first, room)
 

@@ -106,6 +106,6 @@ def _check_variables(plugin: type[Plugin], what: str, variables: Mapping[str, St
             parameters = ", ".join(plugin.model_fields) or "none"
             of = "law" if what == "state" else "contact"
             raise ValueError(
-                f"its {what} '{name}' starts from '{variable.initial}', which is no parameter of the {of}; "
-                f"its parameters: {parameters}"
+                f"its {what} '{name}' starts from '{variable.initial}', which is not a parameter of the "
+                f"{of}; its parameters: {parameters}"
             )

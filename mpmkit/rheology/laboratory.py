@@ -19,6 +19,7 @@ from .deposits import (
 )
 from .funnels import Sections, flow_time, rectangles
 from .rotation import coaxial_torque, cylinder_torque
+from .tubes import tube_gradient
 
 G = 9.81
 SQRT3 = math.sqrt(3)
@@ -154,6 +155,10 @@ def _turning_vane(p: Given) -> float:
     return _vane(p, p["turns_per_second"])
 
 
+def _tube(p: Given) -> float:
+    return tube_gradient(p["tube_radius"], p["mean_speed"], p["yield_stress"], p["plastic_viscosity"])
+
+
 STRETCHED = "thin layer at rest, lubrication and stretching"
 THIN = "thin layer at rest, lubrication alone"
 
@@ -197,6 +202,7 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("flow_time", "lubrication in rectangular sections, Kozicki et al. 1966, with a kinetic head",
                 _v_funnel, None)
     ],
+    "tube_extrusion": [Formula("pressure_gradient", "Buckingham & Reiner, exact", _tube, 0.03)],
     "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],
     "vane": [
         Formula("torque_of_vane", "a cylinder that turns, Reiner & Riwlin", _turning_vane, 0.05),

@@ -93,7 +93,7 @@ def _summary(recorder: Recorder, ended: str, wall_time: float) -> dict[str, Any]
     until = simulation.case.until
     if ended == FINISHED and conditions(until):
         LOGGER.warning(
-            "the run has come to until.at_most, %g s, before %s",
+            "the run has reached until.at_most, %g s, before %s",
             latest(until), " or ".join(conditions(until)),
         )  # fmt: skip
     found = [

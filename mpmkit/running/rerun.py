@@ -62,7 +62,7 @@ def first_difference(before: xarray.Dataset, after: xarray.Dataset) -> str | Non
     finished = all(h.attrs.get("stopped_because") in ENDED for h in (before, after))
     rows = min(before.sizes["time"], after.sizes["time"]) - (0 if finished else 1)
     if finished and before.sizes["time"] != after.sizes["time"]:
-        return f"there were {before.sizes['time']} rows and are {after.sizes['time']}"
+        return f"the history had {before.sizes['time']} rows and now has {after.sizes['time']}"
     if missing := set(before.data_vars) ^ set(after.data_vars):
         return f"only one of the two has {', '.join(sorted(map(str, missing)))}"
     for name in ("time", *before.data_vars):

@@ -54,7 +54,7 @@ class Nozzle(Source):
                 if values is None or len(values) != ways:
                     count = 0 if values is None else len(values)
                     raise ValueError(
-                        f"{field} has {count} entries; {ways + 1} points have {ways} ways between them"
+                        f"{field} has {count} entries; {ways + 1} points have {ways} moves between them"
                     )
             if len({len(point) for point in self.points}) > 1:
                 raise ValueError("points must all have the same number of coordinates")
