@@ -33,9 +33,10 @@ def test_a_shipped_fit_is_valid(path):
 
 
 @pytest.mark.slow
-def test_the_seeds_concrete_comes_from_the_curve_of_another_code(tmp_path):
-    """tau0 188.91 Pa within 3 % and k 45.65 Pa s^n within 10 %, from D(t) by finite elements, free slip."""
-    result = mpmkit.fit(FITS / "spread_curve.json", tmp_path / "out")
+@pytest.mark.parametrize("name", ["spread_curve", "two_tests"])
+def test_the_seeds_concrete_comes_from_the_curves_of_other_codes(name, tmp_path):
+    """tau0 188.91 Pa within 3 % and k 45.65 Pa s^n within 10 %, from D(t) by finite elements."""
+    result = mpmkit.fit(FITS / f"{name}.json", tmp_path / "out")
     for path, truth, band in ((YIELD_STRESS, 188.91, 0.03), (CONSISTENCY, 45.65, 0.1)):
         found = result.parameters[path]
         assert found.value == pytest.approx(truth, rel=band)
