@@ -134,7 +134,7 @@ def test_the_seconds_of_a_step_follow_what_walls_and_redistributions_have_to_do(
         (1000.0, 50.0, 3.5e-3),  # in every twentieth step of 1 ms
         (1000.0, 5000.0, 13e-3),  # never more than once in a step
     ):
-        growth = Growth(1.0, 1.0, 1.0, nan, nan, nan, walls, often, of_the_case=False)
+        growth = Growth(1.0, 1.0, 1.0, nan, nan, nan, nan, walls, often, of_the_case=False)
         assert _mean_seconds(start, 1000, growth, 1e-3) == pytest.approx(expected)
     assert start.step == pytest.approx(3e-3)
 

@@ -94,7 +94,7 @@ def test_a_parameter_of_a_contact_that_is_named_by_a_word_can_be_set():
 
 def test_its_plug_ins_are_named():
     used = [(kind, plugin.name) for kind, plugin in plugins_of(parse_case(SLUMP))]
-    assert used[-2:] == [("surface", "body"), ("contact", "slip")]
+    assert used[-3:] == [("surface", "body"), ("contact", "slip"), ("body_shape", "frustum")]
 
 
 def test_the_schema_has_every_surface_and_contact():

@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from ..contracts import BodyShape
 from .ending import ending
 from .model import Case
 from .picture import picture
@@ -41,7 +42,7 @@ def _rows(case: Case) -> Iterator[tuple[str, str]]:
     faces = [f"{name}: {_said(face)}" for name, face in case.grid.faces.items()]
     yield "faces", ", ".join(faces) or "open"
     for number, body in enumerate(case.bodies):
-        yield f"bodies.{number}", f"{_named(body.shape, 'kind')}, {_material(body.material)}"
+        yield f"bodies.{number}", f"{_shape(body.shape)}, {_material(body.material)}"
     for name, inflow in case.sources.items():
         yield f"sources.{name}", f"{inflow.kind}, {_material(inflow.material)}"
     for name, wall in case.walls.items():
@@ -60,10 +61,10 @@ def _said(value: Any) -> str:
     return str(getattr(value, "kind", None) or getattr(value, "name", None) or value)
 
 
-def _named(model: BaseModel, key: str) -> str:
-    """A model by its name and its numbers."""
-    numbers = [f"{name} {value:g} m" for name, value in model if isinstance(value, float)]
-    return " ".join([str(getattr(model, key)), *([f"({', '.join(numbers)})"] if numbers else [])])
+def _shape(shape: BodyShape) -> str:
+    """A shape by its name and its lengths."""
+    lengths = [f"{name} {value:g} m" for name, value in shape if isinstance(value, float)]
+    return f"{shape.name} ({', '.join(lengths)})" if lengths else shape.name
 
 
 def _material(material: BaseModel) -> str:

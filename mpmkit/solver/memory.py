@@ -30,8 +30,8 @@ PASSING = 4
 """Temporary doubles per particle: keys and order of a sort, or averages and those of a law."""
 DOUBLES_PER_NODE = NODE + PAIR + 1 + 3
 """Doubles per node: its record, sums of an average, the average, its volume, its crowding, and their sums."""
-MIRRORED = 4
-"""Doubles per node of a redistribution's lattice: its sums, its crowding, and its volume."""
+MIRRORED = 3
+"""Doubles per node of a redistribution's lattice: its sum, its crowding, and its volume."""
 COPY = 1.125
 """Size of a checkpoint's buffer relative to its content: Python's buffers grow by an eighth at a time."""
 LOOKED_AT = 1 << 12
@@ -136,12 +136,12 @@ def _state_doubles(case: Case) -> int:
     with blaming_plugins(plugins_of(case)):  # plug-ins define what a particle carries
         state = max(sum(value.size for value in initial_state(law, 1).values()) for law in laws)
         has_domain = audit.particle_domain(case.scheme.shape) != "fixed"
-    number_mass_volumes_pressures_rate_parts_age = 11
+    number_mass_volumes_pressures_rates_parts_age = 12
     vectors = 4 * dim + dim * has_domain
     affine = dim * dim * case.scheme.velocity.affine
     gradient_and_stress = 9 + 6
     return (
-        number_mass_volumes_pressures_rate_parts_age
+        number_mass_volumes_pressures_rates_parts_age
         + vectors
         + affine
         + gradient_and_stress
