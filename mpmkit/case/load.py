@@ -122,7 +122,8 @@ def count_from(folder: Path, data: dict[str, Any], registry: Registry | None = N
         places.append(wall.get("surface") if isinstance(wall, dict) else None)
     for shape in (value for place in places if isinstance(place, dict) for value in place.values()):
         known = shapes.get(str(shape.get("kind"))) if isinstance(shape, dict) else None
-        for field in () if known is None else known.files:  # type: ignore[attr-defined]
+        files: tuple[str, ...] = known.files if known else ()  # type: ignore[attr-defined]
+        for field in files:
             if isinstance(shape.get(field), str):
                 shape[field] = str(folder.absolute() / shape[field])
 

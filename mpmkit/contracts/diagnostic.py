@@ -118,7 +118,7 @@ class Diagnostic(Plugin):
 
     @abstractmethod
     def measure(self, scene: Observed) -> Mapping[str, float]:
-        """A number for each column, by its name; ``nan`` if there is none."""
+        """One number for each column, by its name; ``nan`` where it has no value."""
 
 
 class ParticleField(Plugin):
