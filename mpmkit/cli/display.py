@@ -226,8 +226,8 @@ def show_summary(directory: Path) -> None:
             figure += f", {state}"
         echo(f"{label:<{width}}  {figure}")
     speed = summary["particle_steps_per_second"]
-    shown = "–" if speed is None else _speed(speed, "million")
-    echo(f"{PARTICLE_STEPS:<{width}}  {shown}")
+    rate = "–" if speed is None else _speed(speed, "million")
+    echo(f"{PARTICLE_STEPS:<{width}}  {rate}")
     for name in [name for name in summary["units"] if name not in UNITS]:
         unit = summary["units"][name].removeprefix("1")
         value = summary[name]
