@@ -54,7 +54,7 @@ class _Asked:
             raise ValueError(f"surface takes {' and '.join(places)}")
         return 1.0
 
-    def _domain(self) -> list[tuple[float, float]]:
+    def _domain(self) -> list[list[float]]:
         """Ends of the horizontal axes."""
         return [self._case.grid.domain[axis] for axis in self._axes[:-1]]
 
