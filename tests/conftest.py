@@ -28,7 +28,7 @@ COMPILE_NOTHING = {
     "test_body_shape_kit.py", "test_case.py", "test_case_values.py", "test_code_cache.py",
     "test_distances.py", "test_examples.py", "test_fit_files.py", "test_geometry.py",
     "test_geometry_between.py", "test_mesh_files.py", "test_meshes.py", "test_messages.py",
-    "test_new_plugin.py", "test_registry.py", "test_study_files.py", "test_surfaces_and_contacts.py",
+    "test_new_plugin.py", "test_study_files.py", "test_surfaces_and_contacts.py",
 }  # fmt: skip
 """Files whose tests need few kernels or none."""
 
