@@ -40,6 +40,8 @@ def pytest_collection_modifyitems(items):
     Each takes one half of the tests. If both began with simulations, they would compile the same kernels at
     the same time; so the second finds those of the first in the cache.
     """
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return
     first = [item for item in items if item.path.name in COMPILE_NOTHING]
     others = [item for item in items if item.path.name not in COMPILE_NOTHING]
     middle = len(items) // 2

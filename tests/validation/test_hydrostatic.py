@@ -19,6 +19,7 @@ from accurate_setup import SCHEME
 from bands import below, close_to
 
 import mpmkit
+from mpmkit.kernels.scatter import CONTACT
 from mpmkit.registry import installed
 from mpmkit.solver.particle_fields import mean_pressure
 
@@ -200,6 +201,21 @@ def test_rest_lasts(validate, space):
     assert simulation.measures(p)["max_speed"] < 1.01 * speed
     moved = np.abs(p.position[np.argsort(p.number)] - start).max() / HEIGHT
     validate(f"Hydrostatic column, {space}: moved over H, for as long again", moved, below(1e-7, "0"))
+
+
+@pytest.mark.section(6)
+@pytest.mark.parametrize("space", ONE_FAST)
+def test_contact_does_not_flicker_at_rest(validate, space):
+    """A column in a tube, touching floor and walls, in 1000 steps once it is at rest."""
+    simulation = at_rest(space)
+    window = simulation.operations.window
+    before, changes = window.nodes[:, CONTACT].copy(), 0
+    for _ in range(1000):
+        simulation.advance()
+        changes += int((window.nodes[:, CONTACT] != before).sum())
+        before[:] = window.nodes[:, CONTACT]
+    assert before.any()
+    validate(f"Column at rest, {space}: changes of contact in 1000 steps", changes, below(0, "0"))
 
 
 @pytest.mark.parametrize("space", ONE_FAST)
