@@ -28,6 +28,12 @@ from mpmkit.fitting.model import Budget
 FINAL = {"variable": "final_spread", "value": final_spread(150), "uncertainty": 0.005}
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Fits without their figures, which take longer to draw than all else here."""
+    monkeypatch.setattr("mpmkit.fitting.figures.draw", lambda result, directory: [])
+
+
 @pytest.fixture(scope="module")
 def of_a_curve(tmp_path_factory):
     """A fit to an exact curve: the fit, its directory, its result, and the runs that were made for it."""
@@ -79,6 +85,7 @@ def test_both_come_from_the_final_spread_and_t500():
         assert found[path].low < truth < found[path].high
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_parameters_at_the_top_of_a_laboratory_case_are_found(tmp_path):
     measured = [FINAL, {"variable": "t500", "value": t500(150, 40), "relative_uncertainty": 0.03}]
     parameters = {f"parameters.{path.split('.')[-1]}": PARAMETERS[path] for path in PARAMETERS}
@@ -121,6 +128,7 @@ def test_the_coarser_model_only_leads_the_way(tmp_path):
     assert width[0] > 2 * width[1]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_runs_are_kept_and_reused(of_a_curve, tmp_path):
     fit, out, _, ran = of_a_curve
     assert len(ran) > 5
@@ -131,6 +139,7 @@ def test_runs_are_kept_and_reused(of_a_curve, tmp_path):
     assert (tmp_path / "out/fit.json").read_bytes() == before
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(of_a_curve, tmp_path):
     fit, _, straight, ran = of_a_curve
     first, rest = Pretend(), Pretend()
@@ -177,6 +186,7 @@ def test_the_flow_curve_has_the_band_of_its_parameters(of_a_curve):
     assert np.all(found.stress < found.high)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_another_fit_does_not_take_the_place_of_a_result(tmp_path):
     mpmkit.fit(a_fit([FINAL], {YIELD_STRESS: PARAMETERS[YIELD_STRESS]}), tmp_path, executor=Pretend())
     with pytest.raises(CaseError, match="holds the result of another fit"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from functools import cache
 
 import numpy as np
 import pytest
@@ -45,6 +46,12 @@ def advanced(steps=150, **changes):
     for _ in range(steps):
         simulation.advance()
     return simulation, simulation.account()
+
+
+@cache
+def of_kind(kind):
+    """One run for all who only look at it."""
+    return advanced(200, **KINDS[kind])
 
 
 def scale(simulation, account):
@@ -108,7 +115,7 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_mass_and_momentum_are_accounted_for(kind):
-    simulation, account = advanced(200, **KINDS[kind])
+    simulation, account = of_kind(kind)
     p = simulation.particles
     np.testing.assert_allclose(account[:, MASS].sum(), p.mass.sum(), rtol=1e-14)
     np.testing.assert_allclose(account[:, 1:-1].sum(axis=0), p.mass @ p.velocity, rtol=0, atol=1e-10)
@@ -124,7 +131,7 @@ def test_mass_and_momentum_are_accounted_for(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_energy_is_dissipated_and_not_made(kind):
     """What is left over is what the material dissipates: negative, and small before anything has moved."""
-    simulation, account = advanced(200, **KINDS[kind])
+    simulation, account = of_kind(kind)
     energies = account[:, ENERGY]
     supply = energies[0] + abs(energies[GRAVITY]) + abs(energies[FORCES]) + abs(energies[WALLS])
     assert energies[REST] < 0.01 * supply

@@ -188,8 +188,8 @@ def test_a_run_that_a_guard_stopped_has_a_page_that_says_so(tmp_path, monkeypatc
     assert data_of(page)["flow"]["packing"]["moments"]
 
 
-def test_the_flow_does_not_depend_on_a_stop(tmp_path, monkeypatch):
-    whole = a_slump(tmp_path / "whole")
+def test_the_flow_does_not_depend_on_a_stop(slump, tmp_path, monkeypatch):
+    monkeypatch.setattr("mpmkit.report.draw_pictures", lambda directory: [])
     advance = Simulation.advance
 
     def stopped(self, *arguments):
@@ -203,7 +203,7 @@ def test_the_flow_does_not_depend_on_a_stop(tmp_path, monkeypatch):
         with pytest.raises(Interrupted):
             run(case, tmp_path / "stopped", threads=1, checkpoint_every=0.05)
     resume(tmp_path / "stopped", threads=1)
-    before, after = (arrays_of(read_flow(d / "flow.npz")) for d in (whole, tmp_path / "stopped"))
+    before, after = (arrays_of(read_flow(d / "flow.npz")) for d in (slump, tmp_path / "stopped"))
     for name, array in before.items():
         np.testing.assert_array_equal(array, after[name], err_msg=name)
 

@@ -95,7 +95,7 @@ def test_film_slides_on_a_coulomb_wall_alike_along_every_axis(validate, order, s
     lower, upper = ([ends[k] for ends in sizes] for k in (0, 1))
     simulation = scene(order, lower, upper, [*sizes[:-1], [0, 6 + height]], faces, gravity, update="usl")
     p, times, speeds = simulation.particles, [], []
-    while simulation.time < 0.15:
+    while simulation.time < 0.1:
         simulation.advance()
         times.append(simulation.time)
         speeds.append(float(p.mass @ p.velocity[:, order[0]] / p.mass.sum()))

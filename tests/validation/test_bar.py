@@ -121,7 +121,7 @@ def test_energy_with_cpgimp_at_50_cells(validate, order):
     assert largest < 1.01
 
 
-@pytest.mark.parametrize("shape", ["linear", "cpgimp"])
+@pytest.mark.parametrize("shape", [pytest.param("linear", marks=pytest.mark.slow), "cpgimp"])
 def test_energy_at_13_cells(validate, shape):
     """USL dissipates, USF feeds energy in; no particle crosses a cell."""
     title = "Energy of the vibrating bar, 13 cells, 1 particle"

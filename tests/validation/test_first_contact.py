@@ -18,7 +18,6 @@ import pytest
 from bands import above, below, close_to
 from clock import at
 from test_faces import DX, RELEASING, SOFT, G, mean_velocity, rub, scene
-from test_hydrostatic import ONE_FAST, at_rest
 from test_slump import ROOT, Slump, cells
 
 import mpmkit
@@ -218,20 +217,6 @@ def test_a_wall_lets_go_in_free_fall(validate, wall):
 
 
 # --- What rests
-
-
-@pytest.mark.parametrize("space", ONE_FAST)
-def test_contact_does_not_flicker_at_rest(validate, space):
-    """A column in a tube, touching floor and walls, in 1000 steps once it is at rest."""
-    simulation = at_rest(space)
-    window = simulation.operations.window
-    before, changes = window.nodes[:, CONTACT].copy(), 0
-    for _ in range(1000):
-        simulation.advance()
-        changes += int((window.nodes[:, CONTACT] != before).sum())
-        before[:] = window.nodes[:, CONTACT]
-    assert before.any()
-    validate(f"Column at rest, {space}: changes of contact in 1000 steps", changes, below(0, "0"))
 
 
 @pytest.mark.slow

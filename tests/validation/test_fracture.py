@@ -33,7 +33,7 @@ def density_off(simulation: mpmkit.Simulation) -> float:
     ("redistribution", "domain", "splitting", "name"),
     [
         ("none", "fixed", False, "fixed boxes"),
-        ("none", "strain", False, "boxes that follow"),
+        pytest.param("none", "strain", False, "boxes that follow", marks=pytest.mark.slow),
         ("none", "strain", True, "splitting"),
         ("even", "strain", False, "even"),
     ],

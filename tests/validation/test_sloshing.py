@@ -95,7 +95,10 @@ def draw(validate, label, t, s):
     chart.line(label, t, s)
 
 
-@pytest.mark.parametrize("order", ["usl", pytest.param("usf", marks=pytest.mark.slow), "musl"])
+OTHERS = [pytest.param(order, marks=pytest.mark.slow) for order in ("usf", "musl")]
+
+
+@pytest.mark.parametrize("order", ["usl", *OTHERS])
 def test_standing_wave(validate, order):
     t, s, squared = slosh(10, **scheme(order=order))
     name = f"Sloshing, {order.upper()}, 10 cells deep: omega²"
