@@ -6,7 +6,7 @@ from mpmkit.contracts import Contact, ContactNodes, StateVariable, hookimpl
 
 
 class Stick(Contact):
-    """v = w at every node that material has reached; with ``releases``, only as long as it does not leave.
+    """v = w at every node that material touches; with ``releases``, only until the material leaves.
 
     Whether a wall that releases holds a node is decided once a step, as for ``slip``.
     """
