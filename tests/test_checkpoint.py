@@ -1,4 +1,4 @@
-"""A run that was stopped, however it was, goes on to the bits that it would have come to."""
+"""A run that was stopped in any way continues to the same bits as a run without a stop."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ LAWS = {
 
 
 def written_and_read(state):
-    """A state as a file would give it back."""
+    """A state after writing it to a file and reading it."""
     content = io.BytesIO()
     np.savez(content, allow_pickle=False, **state)
     with np.load(io.BytesIO(content.getvalue()), allow_pickle=False) as archive:
@@ -145,7 +145,7 @@ WALL = {"kind": "friction", "coefficient": 0.3}
     ],
     ids=lambda changes: changes[0],
 )
-def test_what_walls_domains_and_velocities_remember(changes):
+def test_memory_of_walls_domains_and_velocities_is_restored(changes):
     """As it falls, with particles that are split: 300 steps, so that the window moves on."""
     case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], *changes])
     whole, again = stopped_at_half(case, 300)
@@ -153,7 +153,7 @@ def test_what_walls_domains_and_velocities_remember(changes):
     assert_same(whole, again)
 
 
-def test_what_a_redistribution_remembers():
+def test_memory_of_a_redistribution_is_restored():
     """The shear since the last time, and the parts of their volumes that particles keep in between."""
     changes = ["scheme.redistribution=even", "scheme.splitting=false"]
     case = load_case(CASES / "slump_fast.json", [*COARSE["slump_fast"], *changes])
@@ -230,7 +230,7 @@ def test_an_interrupted_run_goes_on_and_leaves_what_an_uninterrupted_one_does(st
 
 
 def test_particles_that_came_on_the_way_are_in_the_history(tmp_path, monkeypatch):
-    """Rows of ever more particles survive the checkpoint."""
+    """Rows with increasing numbers of particles survive the checkpoint."""
     case = load_case(
         CASES / "slump_fast.json",
         [*COARSE["slump_fast"], "until=0.4", "output.report=false", 'output.particle_history=["velocity"]'],
@@ -271,7 +271,7 @@ def test_a_damaged_checkpoint_is_noticed_and_the_one_before_is_used(stopped, how
     same_histories(stopped, stopped.with_name("whole"))
 
 
-def test_where_all_are_damaged_the_run_is_refused_and_left_alone(stopped):
+def test_a_run_with_damaged_checkpoints_only_is_refused_and_unchanged(stopped):
     last, _ = damaged(stopped, "empty")
     last.write_bytes(last.read_bytes()[:1000])
     before = {path: path.read_bytes() for path in stopped.rglob("*") if path.is_file()}
@@ -347,7 +347,7 @@ def test_other_versions(stopped, what, monkeypatch):
         resume(stopped)
 
 
-def test_a_directory_that_is_none_of_a_run(tmp_path):
+def test_a_directory_without_a_run(tmp_path):
     with pytest.raises(CaseError, match=r"is not the directory of a run: it has no case\.json"):
         resume(tmp_path)
 
@@ -371,7 +371,7 @@ KILLED = {
 
 
 def kill_again_and_again(tmp_path, name, times, seed, *more_changes):
-    """The run of a slump, killed at random and taken up, until it is through."""
+    """The run of a slump, killed at random and resumed, until it is finished."""
     chosen = random.Random(seed)
     changes = [*COARSE[name], *KILLED[name], "output.report=false", *more_changes]
     case = load_case(CASES / f"{name}.json", changes)
@@ -402,13 +402,13 @@ def kill_again_and_again(tmp_path, name, times, seed, *more_changes):
     return killed
 
 
-def test_killed_and_taken_up(tmp_path):
+def test_killed_and_resumed(tmp_path):
     assert kill_again_and_again(tmp_path, "slump_fast", 1, 1, "until=4") == 1
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", KILLED)
-def test_killed_and_taken_up_twenty_times(tmp_path, name):
+def test_killed_and_resumed_twenty_times(tmp_path, name):
     total = 0
     for seed in range(20):
         total += kill_again_and_again(tmp_path / str(seed), name, times=20 - total, seed=seed)

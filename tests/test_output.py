@@ -1,4 +1,4 @@
-"""What a run writes: each file read back, whole at every moment, and never over what must be kept."""
+"""Files of a run: readable, complete at every moment, and never written over files of a user."""
 
 from __future__ import annotations
 
@@ -323,7 +323,7 @@ class TestSummary:
         assert summary["units"]["final_spread"] == "m"
 
     def test_what_a_guard_refused_is_not_summarised(self):
-        """A particle thrown out in the last row makes no final shape, and nothing is at rest."""
+        """If a particle was thrown out in the last row, there is no final shape and no rest."""
         thrown_out = self.summary(small_history(), stopped_because="particle-outside", at_rest_since=0.1)
         assert thrown_out["at_rest_since"] is thrown_out["final_spread"] is None
         assert thrown_out["final_spread_rate"] is None

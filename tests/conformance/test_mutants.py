@@ -95,7 +95,7 @@ def checks_on(law):
 
 
 @pytest.mark.parametrize("law", [Oil, Plastic, Spring, Ageing, NeoHooke])
-def test_a_sound_law_passes(law):
+def test_a_correct_law_passes(law):
     checks = checks_on(law())
     assert len(checks) >= 15
     for name, check in checks.items():
@@ -144,7 +144,7 @@ SHAPE_MUTANTS = [
 
 
 @pytest.mark.parametrize("shape", [shape_mutants.Hats, shape_mutants.Splines])
-def test_a_sound_shape_passes(shape):
+def test_a_correct_shape_passes(shape):
     for check in shape_checks(shape()):
         if check.name != "registered":
             check()
@@ -175,7 +175,7 @@ ORDER_MUTANTS = [
 ]
 
 
-def test_a_sound_order_passes():
+def test_a_correct_order_passes():
     for check in order_checks(order_mutants.Modified()):
         if check.name != "registered":
             check()
@@ -396,7 +396,7 @@ OTHER_MUTANTS = [
         ("particle_field", particle_field_mutants.Momentum),
     ],
 )
-def test_a_sound_one_passes(kind, plugin):
+def test_a_correct_plugin_of_another_kind_passes(kind, plugin):
     for check in CHECKS[kind](plugin()):
         if check.name != "registered":
             check()
@@ -465,8 +465,8 @@ def test_the_sentence_says_what_where_and_by_how_much():
         ),
     ],
 )
-def test_what_is_not_written_is_called_by_name(checks, name, sentence):
-    """Whatever the check: not by what follows from it, such as a stress of 0 Pa."""
+def test_an_output_that_is_not_written_is_named(checks, name, sentence):
+    """Every check names this fault itself, and not a consequence of it such as a stress of 0 Pa."""
     with pytest.raises(Violation) as caught:
         checks()[name]()
     assert str(caught.value) == sentence

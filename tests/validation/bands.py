@@ -1,6 +1,6 @@
-"""Bands: what a test expects of a number, how far it may be off, and how much of that it used up.
+"""Bands: the expected value of a number, the tolerance, and the part of the tolerance that is used.
 
-The verdict in the validation report and the assertion of the test are this one comparison.
+The verdict in the validation report and the assertion of the test are the same comparison.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Affine velocities: what they keep, and a damping that is a matter of time and not of steps."""
+"""Affine velocities: conserved angular momentum, and a damping that does not depend on the step."""
 
 from __future__ import annotations
 

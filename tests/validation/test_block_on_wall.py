@@ -1,4 +1,4 @@
-"""A stiff block on a wall at any place and angle: friction, and when the wall is felt."""
+"""A stiff block on a wall at any position and angle: friction, and the time of first contact."""
 
 from __future__ import annotations
 

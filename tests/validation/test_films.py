@@ -1,6 +1,6 @@
-"""Films down a slope: their speed, and rest below the critical thickness.
+"""Films on a slope: their speed, and rest below the critical thickness.
 
-A film that is barely thick enough shears in a thin layer at its bed; one that is not thick enough stays.
+A film slightly thicker than critical shears in a thin layer at its bed; a thinner film stays at rest.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Numerical fracture: particles drawn apart until the grid between them is empty, and what cures it."""
+"""Numerical fracture: particles move apart until nodes between them are empty; and its cures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Free flight: no wall, no force but gravity. Mass and momentum are kept to rounding, however long it is."""
+"""Free flight, with gravity only: mass and momentum are conserved to rounding at all times."""
 
 from __future__ import annotations
 

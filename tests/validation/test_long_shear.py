@@ -1,8 +1,8 @@
-"""Flows that go on: material that is sheared many times over keeps its speed, its height and its volume.
+"""Flows with long shear: speed, height and volume of the material stay right.
 
-Shear scrambles neighbours. Without a redistribution boxes, volumes and places of the particles come to say
-different things, and a steady film slows down to 0.67 of its speed in 9.6 s and to 0.44 in 12 s. All scenes
-here have the default scheme.
+Shear changes the neighbours of particles. Without a redistribution, their boxes, volumes and positions then
+contradict each other, and a steady film slows down to 0.67 of its speed in 9.6 s and to 0.44 in 12 s. All
+scenes here have the default scheme.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def test_a_pipe_keeps_its_speed(validate, until):
     ("yield_stress", "viscosity", "density"),
     [pytest.param(40.0, 20.0, 2300.0, marks=slow), pytest.param(10.0, 1.0, 1900.0, marks=slow)],
 )
-def test_what_is_let_go_in_a_tank_does_not_sink_into_itself(validate, yield_stress, viscosity, density):
+def test_material_released_in_a_tank_keeps_its_volume(validate, yield_stress, viscosity, density):
     """No lower than the flat pool, less 0.5 %, of which 0.3 % are compression by its own weight.
 
     Without a redistribution the centre of mass sinks to 0.764, or with thinner mortar to 0.62.

@@ -202,7 +202,7 @@ def test_what_begins_without_pressure_says_how_it_swings_and_does(material):
     assert 1.6 < max(part) < 2.1
 
 
-def test_viscosity_that_ends_the_swing_is_told_and_what_has_none_is_not():
+def test_the_warning_gives_the_time_in_which_viscosity_damps_the_oscillation():
     """6 ρ h²/(π² mu) = 0.27 s for 200 Pa s: six periods of 0.049 s."""
     (said,) = (
         s for s in open_column(WATER | {"viscosity": 200.0}, 0.6).remarks() if "gravity acts suddenly" in s

@@ -97,7 +97,7 @@ def compare(validate, name: str, slump: Slump, curve: float, t500: float, final:
 
 
 def test_slump_at_10_mm(validate):
-    """900 particles at the start, within the figures that are asked of 5 mm."""
+    """900 particles at the start; the bands are those for cells of 5 mm."""
     slump = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=2.0)
     compare(validate, "Slump, 10 mm", slump, curve=0.015, t500=0.04, final=0.01)
 

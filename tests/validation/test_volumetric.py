@@ -1,4 +1,4 @@
-"""Volumetric treatments: no energy out of nothing, in any space, with any shape function and update order."""
+"""Volumetric treatments create no energy, in any space, with any shape function and update order."""
 
 from __future__ import annotations
 
