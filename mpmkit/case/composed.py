@@ -24,10 +24,13 @@ from pydantic_core import PydanticKnownError
 
 from ..contracts import BodyShape, ConstitutiveLaw, Plugin, Source
 from ..registry import Registry, installed
+from .bodies import Body, Inflow
 from .consistency import check
 from .html import case_html
-from .model import Body, Case, Inflow, Material, Scheme, Wall
+from .material import Material
+from .model import Case, Wall
 from .output import OutputSettings
+from .scheme import Scheme
 
 
 class CheckedCase(Case):

@@ -14,7 +14,9 @@ import numpy as np
 
 from ..registry import audit
 from ..registry.blame import blaming_plugins
-from .model import Body, Case, Material
+from .bodies import Body
+from .material import Material
+from .model import Case
 from .plausibility import implausible
 from .walls import ROUNDING, wall_between
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..case.ending import ending
-from ..case.faces import Stick
-from ..case.model import Case, Face
+from ..case.faces import Face, Stick
+from ..case.model import Case
 from .lift import lift_start
 from .wall_words import wall_sentences
 
