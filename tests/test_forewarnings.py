@@ -118,7 +118,7 @@ def test_a_body_that_oscillates_off_a_slip_wall_gets_a_cure():
     bar = box([0, 0], [1, 0.5]) | swings
     faces = {"x_min": "slip", "z_min": "slip"}
     solid = scene(bar | {"material": rubber}, faces=faces)
-    assert "bodies.0 is not held by the face x_min: it swings" in said(solid)
+    assert "bodies.0 is not held by the face x_min: it oscillates" in said(solid)
     assert 'write "x_min": "symmetry" in grid.faces' in said(solid)
     assert said(solid).count("is not held") == 1  # not of z_min, along which nothing moves
     assert "is not held" in said(scene(bar, faces=faces, gravity=(0, 0)))

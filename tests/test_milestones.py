@@ -244,7 +244,8 @@ class TestWhatIsSaid:
             ({"z_min": {"kind": "friction", "coefficient": 0.4}}, "friction, with the coefficient 0.4"),
             (
                 {"z_min": {"kind": "stick", "releases": True}},
-                "stick, so that the material does not slide on it, and lets go where it would have to pull",
+                "stick, so that the material does not slide on it, and releases it where it would have to "
+                "pull",
             ),
             ({}, None),
         ],

@@ -125,7 +125,7 @@ def test_a_bad_wall_is_one_sentence(path, value, part):
                 "normal": [0, 1],
                 "motion": {"kind": "rotation", "point": [0, 0], "rate": 1},
             },
-            "a plane has no end, and its speed would have none; use a body, such as a box",
+            "a plane is infinite, and so would be its speed; use a body, such as a box",
         ),
         (
             {

@@ -157,7 +157,7 @@ def _swings_off(case: Case) -> Iterator[str]:
                 side = _side(case, axis, upwards)
                 if case.grid.faces.get(side) == "slip" and _touches(case, body, axis, upwards):
                     yield (
-                        f'bodies.{number} is not held by the face {side}: it swings, and a "slip" wall '
+                        f'bodies.{number} is not held by the face {side}: it oscillates, and a "slip" wall '
                         "pushes but does not pull, unlike in versions before 0.8; for a plane that holds it "
                         f'write "{side}": "symmetry" in grid.faces'
                     )
@@ -170,8 +170,8 @@ def _thin(case: Case) -> Iterator[str]:
         if cells < ENOUGH_OF_A_WALL * (1 - ROUNDING):
             yield (
                 f"walls.{name} is {cells:.2g} cells thick: the nodes in it that belong to its other side are "
-                "within reach of the material, and the pressure on it can be wrong by a tenth, or energy be "
-                f"created; make it at least {ENOUGH_OF_A_WALL:g} cells thick, or the cells smaller"
+                "within reach of the material, so the pressure on it can be wrong by a tenth, and energy can "
+                f"be created; make it at least {ENOUGH_OF_A_WALL:g} cells thick, or the cells smaller"
             )
 
 

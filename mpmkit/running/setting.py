@@ -77,5 +77,5 @@ def _in_words(face: Face) -> str:
     if isinstance(face, str):
         return FLOORS[face]
     if isinstance(face, Stick):
-        return FLOORS["stick"] + (", and lets go where it would have to pull" if face.releases else "")
+        return FLOORS["stick"] + (", and releases it where it would have to pull" if face.releases else "")
     return f"friction, with the coefficient {face.coefficient:g}"

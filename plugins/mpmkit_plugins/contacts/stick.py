@@ -15,7 +15,7 @@ class Stick(Contact):
     api_version = 2
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
-    releases: bool = Field(default=False, description="whether it lets go of material that is pulled away")
+    releases: bool = Field(default=False, description="whether it releases material that is pulled away")
 
     parity = "odd"
     memory = {"contact": StateVariable("1", "1 where the wall holds the material, 0 elsewhere")}
