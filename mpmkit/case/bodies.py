@@ -36,6 +36,16 @@ InitialVelocity = Annotated[
 
 
 ParticleCount = Annotated[int, Field(gt=0, le=1000)]
+ParticlesPerCell = ParticleCount | list[ParticleCount] | None
+
+
+def _particles_per_cell() -> Any:
+    return quantity(
+        "1",
+        "particles in a full cell (a square or cubic number), or their number along each axis; "
+        "default: 2 along each axis",
+        default=None,
+    )
 
 
 class Body(Model):
@@ -43,12 +53,7 @@ class Body(Model):
 
     shape: BodyShape = Field(description="where the body is at the start")
     material: Material = Field(description="what the body is made of")
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
-        "1",
-        "particles in a full cell (a square or cubic number), or their number along each axis; "
-        "default: 2 along each axis",
-        default=None,
-    )
+    particles_per_cell: ParticlesPerCell = _particles_per_cell()
     velocity: InitialVelocity | None = quantity(
         "m/s", "initial velocity along each axis, or a standing wave; default: at rest", default=None
     )
@@ -84,12 +89,7 @@ class Inflow(Model):
 
     kind: str = Field(description="name of the source")
     material: Material = Field(description="what comes in")
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
-        "1",
-        "particles in a full cell (a square or cubic number), or their number along each axis; "
-        "default: 2 along each axis",
-        default=None,
-    )
+    particles_per_cell: ParticlesPerCell = _particles_per_cell()
 
     source_class: ClassVar[type[Source]]
 
