@@ -117,7 +117,7 @@ def test_the_more_friction_the_less_the_slump_spreads():
 @pytest.mark.parametrize("space", ["plane-strain", "axisymmetric", "3d"])
 @pytest.mark.parametrize("wall", WALLS, ids=str)
 def test_a_block_falls_freely_until_it_touches_the_floor(validate, wall, space, shape):
-    """It falls 3.5 cells; until then its velocity is g t, exactly, and from then on it is not."""
+    """The block falls 3.5 cells. Until then its velocity is exactly g t, and afterwards it is not."""
     axes = {"plane-strain": "xz", "axisymmetric": "rz", "3d": "xyz"}[space]
     drop = 3.5 * DX
     across = len(axes) - 1
@@ -157,7 +157,7 @@ def test_a_block_falls_freely_until_it_touches_the_floor(validate, wall, space, 
 
 
 def test_a_wall_takes_the_energy_of_half_a_cell(validate):
-    """The nodes in its plane stop at the moment of touch; the finer the grid, the less is lost."""
+    """The nodes in the plane of the wall stop at the moment of contact; a finer grid loses less energy."""
     for count in (4, 8):
         lost = 1 - rebound("slip", count) / rebound("symmetry", count)
         name = f"Block of {count} cells thrown at a wall: energy lost, over that of half a cell"
@@ -165,7 +165,7 @@ def test_a_wall_takes_the_energy_of_half_a_cell(validate):
 
 
 def rebound(face: str, count: int) -> float:
-    """Energy of a block of so many cells after it came back, over what it had."""
+    """Energy of a block of this many cells after its rebound, over its energy before."""
     size = 4 * DX
     cell = size / count
     simulation = mpmkit.Simulation(

@@ -78,9 +78,9 @@ def test_a_deposit_agrees_with_lubrication_alone(validate, name):
 
 @pytest.mark.parametrize(("part", "hangs"), [(1.05, True), (0.57, False)])
 def test_a_film_hangs_below_its_critical_thickness_and_sags_above_it(validate, part, hangs):
-    """h_c = τ0/(ρ g). The spring of exact yield gives way by 2 τ0 H/(3 G) at most, as its swing begins.
+    """h_c = τ0/(ρ g). The elastic part of a law with exact yield deforms by 2 τ0 H/(3 G) at most.
 
-    With τ0/G = 0.3 % this is 0.2 % of the thickness; the film that sags has gone on by 1 % after 0.04 s.
+    With τ0/G = 0.3 % this is 0.2 % of the thickness; the film that sags has moved by 1 % after 0.04 s.
     """
     p = given("sagging_film")
     stress = part * p["density"] * G * p["thickness"]
@@ -112,9 +112,10 @@ LAST = pytest.mark.xfail(
 @pytest.mark.slow
 @pytest.mark.parametrize("part", [0.5, 0.7, pytest.param(0.8, marks=LAST)])
 def test_the_flow_time_of_a_v_funnel_grows_in_line_with_the_viscosity(validate, part):
-    """Of three viscosities, the middle one lies on the line of the others.
+    """Of three viscosities, the flow time of the middle one lies on the line of the others.
 
-    At 0.7 of the mass the middle has emptied to the outlet; at 0.8 the flow time of the case is taken.
+    When 0.7 of the mass has left, the middle of the funnel is empty down to the outlet; the flow time of the
+    case is that of 0.8.
     """
     times = []
     for mu in (10, 20, 50):
@@ -163,8 +164,11 @@ def test_a_frictionless_barrier_is_pushed_along_its_normal(validate):
 
 @pytest.mark.slow
 def test_a_barrier_holds_what_rests_on_it(validate):
-    """½ ρ g h² of the depth at its foot, less π τ0 h/2 where the layer is stretched, as after flowing back
-    from the barrier, and more by as much where it is compressed; 10 % for reading h two cells before it."""
+    """Force ½ ρ g h², with h the depth at the foot of the barrier, and at most π τ0 h/2 more or less.
+
+    The force is less where the layer is stretched, as after flowing back from the barrier, and more where it
+    is compressed. The band has 10 % more, since h is read two cells before the barrier.
+    """
     p, depth = given("barrier"), measured("barrier", "depth_at_barrier")
     weight, stretch = p["density"] * G * depth**2 / 2, math.pi / 2 * p["yield_stress"] * depth
     force = measured("barrier", "force_on_barrier")
@@ -175,9 +179,10 @@ def test_a_barrier_holds_what_rests_on_it(validate):
 @pytest.mark.slow
 @pytest.mark.parametrize("yield_stress", [0.001, 20])
 def test_the_flow_rate_of_a_full_marsh_cone(validate, yield_stress):
-    """Buckingham & Reiner in every section of the full cone, with the kinetic head; 5 Pa is the shipped case.
+    """Buckingham & Reiner in every section of the full cone, with the kinetic head; the shipped case has 5
+    Pa.
 
-    The bands are those of the targets for the first litre, whose closed form tests/test_funnels.py holds.
+    The bands are those of the targets for the first litre; tests/test_funnels.py tests the closed form.
     """
     found = measured("marsh_cone", "outflow_rate", f"parameters.yield_stress={yield_stress}")
     (formula,) = FORMULAS["marsh_cone"]
