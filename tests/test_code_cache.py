@@ -162,7 +162,7 @@ def compiled_once(tmp_path_factory, fresh_run):
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_whatever_changes_that_a_kernel_is_compiled_with_compiles_it_anew(change, compiled_once, fresh_run):
-    """The new value is used, from whatever source; when the old value is restored, the old code is found
+    """The new value is used, from every source; when the old value is restored, the old code is found
     again."""
     files, environment, expected = CHANGES[change]
     before = {name: (compiled_once / name).read_text() for name in files}

@@ -106,7 +106,7 @@ def test_a_body_that_hangs_from_a_plane_of_symmetry_gives_a_warning():
     over, faces = box([0.5, 0], [1, 0.5]), {"z_max": "stick"}
     hanging = scene(over, faces=faces | {"z_min": "symmetry"}, gravity=(0, 9.81))
     assert "bodies.0 hangs from the face z_min: gravity pulls it away from there" in said(hanging)
-    assert '"symmetry" face does not let go of what is at it; "slip" does' in said(hanging)
+    assert '"symmetry" face does not release material that touches it; "slip" does' in said(hanging)
     for wall in ("slip", "stick", {"kind": "friction", "coefficient": 1}):
         assert said(scene(over, faces=faces | {"z_min": wall}, gravity=(0, 9.81))) == ""
 

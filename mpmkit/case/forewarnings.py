@@ -138,7 +138,7 @@ def _hangs(case: Case) -> Iterator[str]:
                     why = "gravity pulls" if falls else "its velocity takes"
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
-                        f'"{face}" face does not let go of what is at it; "slip" does'
+                        f'"{face}" face does not release material that touches it; "slip" does'
                     )
 
 

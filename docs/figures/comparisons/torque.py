@@ -59,7 +59,7 @@ def exact(given: dict[str, float], turns: np.ndarray) -> np.ndarray:
 
 
 def steady(torque) -> float:
-    """Mean of the last twentieth of a run; the torque swings with the sound."""
+    """Mean of the last twentieth of a run; the torque oscillates with sound waves."""
     values = torque.dropna("time").values
     return float(values[-max(1, len(values) // 20) :].mean())
 
