@@ -1,5 +1,5 @@
-"""Set up before anything is imported: two threads, however few cores, so that tests of determinism can fail,
-and no plug-ins but mpmkit's own, whatever else is installed beside it."""
+"""Settings made before any import: two threads even on one core, so that tests of determinism can fail, and
+only the built-in plug-ins."""
 
 import os
 

@@ -29,7 +29,7 @@ def study(**keys):
 
 
 class Now(Executor):
-    """Runs what it is given at once, and counts."""
+    """An executor that runs its work at once in this process, and records it."""
 
     def __init__(self):
         self.ran = []
@@ -45,7 +45,7 @@ class Now(Executor):
 
 
 def fragile(data, threads, page):
-    """In the place of a run: nothing, or the end of the process."""
+    """Instead of a run: does nothing, or ends the process."""
     if data["until"] == DEADLY:
         os.kill(os.getpid(), signal.SIGKILL)
     return Outcome("finished", "", {}, {"wall_seconds": 0.0}, b"")

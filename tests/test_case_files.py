@@ -1,4 +1,5 @@
-"""The run directory of a case with a mesh is enough, wherever it lies, whatever became of the mesh."""
+"""The run directory of a case with a mesh is complete: it can be moved, and the original mesh can be
+deleted."""
 
 from __future__ import annotations
 
@@ -304,7 +305,8 @@ def test_a_run_may_replace_the_one_that_its_case_and_its_mesh_are_from(finished,
 
 
 def test_a_copy_that_was_edited_may_replace_itself(finished):
-    """As the mesh of a new run, that is: it goes by its new content, and what it replaces is gone."""
+    """It counts as the mesh of a new run: the name follows from its new content, and the replaced run is
+    deleted."""
     (copy,) = (finished / "meshes").iterdir()
     ball(copy, 0.09)
     (finished / "meshes" / "mine.stl").write_text("the user's own")

@@ -148,7 +148,7 @@ FACES = {"a lattice plane": 0.03, "a sliver": 0.0302, "a quarter": 0.03125, "hal
 @pytest.mark.parametrize("space", [SOLID, PLANE, RADIAL], ids=lambda space: space.name)
 @pytest.mark.parametrize(("per_axis", "least", "most"), [(1, 0.5, 1.0), (2, 0.75, 1.5)])
 def test_the_boxes_of_a_block_tile_it_wherever_its_faces_are(space, start, end, per_axis, least, most):
-    """Without a factor of volume: no slivers, none wider than a cell, side by side, from face to face."""
+    """Without a correction factor: no slivers, no box wider than a cell, and no gaps between the faces."""
     block = Box(lower=[start] * space.dim, upper=[*[0.02 + start] * (space.dim - 1), end])
     particles = fill(block, space, per_axis=per_axis)
     low, high = particles.position - particles.half_size, particles.position + particles.half_size

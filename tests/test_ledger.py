@@ -1,4 +1,4 @@
-"""The ledger: mass, momentum and energy are what the causes add up to, in every kind of scene."""
+"""The ledger: in every kind of scene, the causes add up to the present mass, momentum and energy."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def of_kind(kind):
 
 
 def scale(simulation, account):
-    """N s that the weight has given, or the walls where there is none."""
+    """Impulse of the weight, N s, or of the walls if there is no gravity."""
     return np.abs(account[[GRAVITY, WALLS], 1:-1]).max()
 
 
@@ -129,8 +129,8 @@ def test_mass_and_momentum_are_accounted_for(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_energy_is_dissipated_and_not_made(kind):
-    """What is left over is what the material dissipates: negative, and small before anything has moved."""
+def test_energy_is_dissipated_and_not_created(kind):
+    """The rest is the dissipation of the material: negative, and small at first."""
     simulation, account = of_kind(kind)
     energies = account[:, ENERGY]
     supply = energies[0] + abs(energies[GRAVITY]) + abs(energies[FORCES]) + abs(energies[WALLS])
@@ -151,7 +151,7 @@ def test_energy_is_dissipated_and_not_made(kind):
 
 
 def test_free_fall_is_exact():
-    """Nothing but gravity: K gains what the weight has lost, and momentum m g t."""
+    """Free fall: K grows by the loss of potential energy, and the momentum is m g t."""
     block = {"shape": {"kind": "box", "lower": [0.2, 0.1], "upper": [0.3, 0.2]}, "material": MUD}
     grid = {"cell_size": 0.02, "domain": {"x": [0, 0.6], "z": [0, 0.3]}}
     simulation, account = advanced(50, bodies=[block], grid=grid)
@@ -168,8 +168,8 @@ def test_free_fall_is_exact():
     assert not account[WALLS].any()
 
 
-def test_the_mass_that_must_be_there_knows_what_has_left():
-    """The guard compares with the ledger: mass that no sink took is missed all the same."""
+def test_the_expected_mass_excludes_the_mass_in_sinks():
+    """The guard compares with the ledger, so it also notices mass that no sink has removed."""
     simulation, _ = advanced(100, sinks={"drain": DRAIN})
     simulation.check()
     simulation.particles.mass[3] *= 0.5

@@ -1,4 +1,4 @@
-"""Bodies that are given as a closed surface mesh: they hold what the surface encloses."""
+"""Bodies from closed surface meshes: they fill the volume inside the surface."""
 
 from __future__ import annotations
 

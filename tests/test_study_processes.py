@@ -1,4 +1,4 @@
-"""Studies on processes of this machine: what dies, what is interrupted, and what is left of it."""
+"""Studies on processes of this machine: processes that die, interrupts, and the files afterwards."""
 
 import json
 import multiprocessing

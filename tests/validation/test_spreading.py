@@ -60,11 +60,11 @@ PAPERS = PAPER | {"time_step": {"fraction": 0.25}}
     ],
 )
 def test_free_slip_sheet_thins_at_its_rate(validate, setup, numerics, until):
-    """v_r = e r with e = rho g H / (12 mu), away from the edge, while H falls as dH/dt = -2 e H.
+    """v_r = e r with e = rho g H / (12 mu), away from the edge, and dH/dt = -2 e H.
 
-    The radial stress of a wide sheet without friction averages to nothing over its height, the vertical one
-    to -rho g H/2, and their difference is 6 mu e. So H = H0/(1 + rho g H0 t/(6 mu)). The edge is felt about
-    a height inwards; momentum spreads over the radius in rho R²/(pi² mu), 0.03 s.
+    Over the height of a wide sheet without friction the mean radial stress is zero and the mean vertical
+    stress -rho g H/2, and their difference is 6 mu e. So H = H0/(1 + rho g H0 t/(6 mu)). The edge has an
+    influence over about one height inwards; momentum diffuses over the radius in rho R²/(pi² mu), 0.03 s.
     """
     radius, height, viscosity = 0.8, 0.1, 2000.0
     simulation = disc(radius, height, viscosity, "slip", 4, 1.2, 20, **numerics)
@@ -99,9 +99,10 @@ def test_free_slip_sheet_thins_at_its_rate(validate, setup, numerics, until):
 def test_huppert(validate, cells, until):
     """R = 0.894 (g V³/(3 nu))^(1/8) t^(1/8) on a stick floor, Huppert, J. Fluid Mech. 121 (1982) 43-58.
 
-    A cylinder eight times as wide as high forgets where it came from while t grows to many times the instant
-    T0 at which the similarity solution has its radius. Inertia, of (H/R)² Ga with Ga = g H³/nu², is then
-    nothing; what is left is the slope, steep at the edge, which is as far ahead as a part of the height.
+    The sheet starts as a cylinder eight times as wide as high. The initial shape has no influence after many
+    times T0, the time at which the similarity solution has the radius of the cylinder. Inertia, of the order
+    (H/R)² Ga with Ga = g H³/nu², is then negligible. The steep edge remains as an error: it is ahead by a
+    part of the height.
     """
     height, aspect, galilei = 0.1, 8, 1000
     radius, nu = aspect * height, math.sqrt(G * height**3 / galilei)
