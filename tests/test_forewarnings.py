@@ -11,6 +11,7 @@ from wall_case import ABSENT, changed
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.forewarnings import forewarnings
 from mpmkit.case.plausibility import implausible
+from mpmkit.case.resolved import resolved
 from mpmkit.cli.commands import execute
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -167,6 +168,17 @@ def test_a_thin_wall_gives_a_warning():
     thin, enough, solid = (parse_case(changed(thickness, value)) for value in (0.058, 0.06, ABSENT))
     assert "walls.mould is 2.9 cells thick" in said(thin)
     assert "cells thick" not in said(enough) + said(solid)
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"), [(1.41, "a wall acts through the nodes in it"), (1.42, "the nodes in it that belong")]
+)
+def test_a_bar_in_which_there_may_be_no_node_is_said(cells, words):
+    """A disc whose diameter is √2 cells has a node of the grid in it wherever it stands."""
+    data = resolved(scene(box([0, 0], [0.5, 0.5]), faces=FLOOR))
+    disc = {"kind": "sphere", "radius": cells * 0.05 / 2, "centre": [1, 0.3]}
+    bar = {"surface": {"kind": "body", "shape": disc, "side": "outside"}, "contact": "stick"}
+    assert f"walls.bar is 1.4 cells thick: {words}" in said(parse_case(data | {"walls": {"bar": bar}}))
 
 
 # --- Bodies that touch

@@ -9,7 +9,9 @@ import mpmkit
 from mpmkit.case.measurements import NAMES, TAKEN
 from mpmkit.case.resolved import resolved
 from mpmkit.errors import CaseError
+from mpmkit.running.measuring import measurements
 from mpmkit.running.recorder import COLUMNS, wall_columns
+from mpmkit.solver.simulation import Simulation
 
 MATERIAL = {
     "law": "bingham-evp",
@@ -82,6 +84,59 @@ def test_the_depth_at_a_point_is_that_of_a_step():
     scene["measurements"]["high"]["formula"] = "depth(0.05, 0.1)"
     with pytest.raises(CaseError, match=r"one along y, from 0 to 0\.04 m"):
         mpmkit.parse_case(scene)
+
+
+def quarter(space="3d"):
+    """A quarter of a block, or a half of a cylinder, of 0.1 m by 0.05 m, beside planes of symmetry."""
+    scene = case(space)
+    if space == "3d":
+        scene["grid"]["domain"]["y"] = [0, 0.2]
+        scene["grid"]["faces"] |= {"x_min": "symmetry", "y_min": "symmetry"}
+        scene["bodies"][0]["shape"]["upper"] = [0.1, 0.1, 0.05]
+    return scene
+
+
+PLACES = {"corner": "0, 0", "on_a_plane": "0.05, 0", "on_the_other": "0, 0.05", "inside": "0.05, 0.05"}
+
+
+@pytest.mark.parametrize(
+    ("space", "places"), [("3d", PLACES), ("axisymmetric", {"axis": "0", "inside": "0.05"})]
+)
+def test_the_depth_beside_planes_of_symmetry_is_that_of_the_block(space, places):
+    """Also where all particles of a cell are in its half at the plane, which the grid does not see."""
+    scene = quarter(space)
+    scene["measurements"] = {
+        f"{look}_{name}": {"formula": f"{look}({at})", "unit": "m", "description": name}
+        for name, at in places.items()
+        for look in ("depth", "surface")
+    }
+    simulation = Simulation(mpmkit.parse_case(scene))
+    first = measurements(simulation, {})
+    near = 1e-12 if space == "3d" else 1e-3  # the volumes of rings are those of boxes with equal sides
+    for name in places:
+        assert first[f"depth_{name}"] == pytest.approx(0.05, rel=near)
+        assert first[f"surface_{name}"] == pytest.approx(0.05, abs=0.025 * 0.01)
+    p = simulation.particles
+    ring = p.position[:, 0].copy() if space == "axisymmetric" else np.ones(len(p))
+    for axis in range(p.dim - 1):
+        p.position[p.position[:, axis] < 0.01, axis] = 0.0025
+    if space == "axisymmetric":
+        p.volume *= p.position[:, 0] / ring
+    moved = measurements(simulation, {})
+    for name in places:
+        assert moved[f"depth_{name}"] == pytest.approx(0.05, rel=near)
+
+
+def test_a_surface_is_measured_at_a_point():
+    with pytest.raises(
+        CaseError, match=r"surface takes one place along x, from 0 to 0\.2 m and one place along y"
+    ):
+        mpmkit.parse_case(case("3d", top=("surface(0.1)", "m")))
+    with pytest.raises(CaseError, match=r"surface takes one place along x, from 0 to 0\.2 m"):
+        mpmkit.parse_case(case(top=("surface(0.3)", "m")))
+    history = mpmkit.run(mpmkit.parse_case(case(top=("surface(0.05)", "m"), beyond=("surface(0.15)", "m"))))
+    assert float(history["top"][0]) == pytest.approx(0.05, abs=0.025 * 0.01)
+    assert np.isnan(history["beyond"].values).all()
 
 
 def test_the_outflow_is_what_a_sink_takes_between_two_rows():

@@ -5,12 +5,15 @@ import math
 import pytest
 
 from mpmkit.rheology.deposits import (
+    BAR,
     BIAXIAL,
     PLANE,
+    bar_step,
     box_depths,
     channel_length,
     cone_spread,
     drop_spread,
+    ring_spread,
     slope_length,
 )
 from mpmkit.rheology.laboratory import FORMULAS
@@ -131,3 +134,31 @@ def test_drops_of_a_table_spend_their_energy_on_stretching_and_on_the_floor(radi
         work += step * (math.sqrt(3) * math.pi * wide**2 + math.pi * wide**3 / (3 * height))
     fallen = sink * work / volume - (first - low) / 2
     assert drop_spread(volume, sink, first / 2, fallen) == pytest.approx(2 * radius, rel=1e-5)
+
+
+def test_bars_in_a_closed_channel_take_their_force():
+    """ρ g (h1² - h2²)/2 = τ0 L + π τ0 (h1 + h2)/2 + π/4 B τ0 (d/p) h, with the depth h at the bars."""
+    sink, length, place = 50 / (2300 * G), 0.8, 0.175
+    step = bar_step(0.012, 0.2 / 3, sink)
+    assert step == pytest.approx(math.pi / 4 * BAR * 0.18 * sink)
+    h1, h2 = box_depths(0.06, length, sink, stretching=PLANE, step=step, bars=place)
+    free = box_depths(0.06, length, sink, stretching=PLANE)
+    assert h1 > free[0]
+    assert h2 < free[1]
+    s = sink * (1 + PLANE * (h1 + h2) / (2 * length))
+    before = math.sqrt(h1**2 - 2 * s * place)
+    held = step * (2 * before - step) / 2  # (before² - behind²)/2
+    assert (h1**2 - h2**2) / 2 == pytest.approx(s * length + held, rel=2e-3)
+
+
+def test_a_ring_of_bars_keeps_a_step_in_the_deposit():
+    sink, volume = 50 / (2300 * G), cone_volume(0.2, 0.1, 0.3)
+    step = bar_step(0.018, 2 * math.pi * 0.15 / 16, sink)
+    diameter, depth = ring_spread(volume, sink, BIAXIAL, 0.15, step)
+    assert depth(0.15 - 1e-9) - depth(0.15) == pytest.approx(step, rel=1e-5)
+    free = cone_spread(volume, sink, BIAXIAL)
+    assert diameter < free
+    held = sum(2 * math.pi * r * depth(r) * 1e-4 for r in (1e-4 * (k + 0.5) for k in range(4000)))
+    assert held == pytest.approx(volume, rel=1e-3)
+    assert ring_spread(volume, sink, BIAXIAL, 0.15, 0.0)[0] == pytest.approx(free, rel=1e-3)
+    assert ring_spread(volume, sink, BIAXIAL, 0.5, step)[0] == pytest.approx(free, rel=1e-3)

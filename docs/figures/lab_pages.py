@@ -20,6 +20,7 @@ from pathlib import Path
 
 import xarray
 from common import DOCS
+from plan_view import draw_plan
 
 from mpmkit.case import load_case, parse_case
 from mpmkit.case.load import read_json
@@ -42,11 +43,14 @@ STATE = ("particles", "steps", "simulated_time", "at_rest_since")
 PAGES, IMAGES = DOCS / "lab", DOCS / "images" / "lab"
 SHARED = {
     "slump_flow": ["t500_from_lift", "at_rest_since"],
+    "j_ring": ["t500_from_lift", "at_rest_since"],
     "slump_test": ["final_height"],
     "standing_layer": ["final_spread"],
     "barrier": ["largest_force", "at_rest_since"],
 }
 """Figures of the summary that a page shows beside what the case measures."""
+FROM_ABOVE = ("j_ring",)
+"""Cases with a second picture, of the deposit from above."""
 LARGEST = {"barrier": {"largest_force": "force_on_barrier"}}
 """Figures that are the largest value of a measurement in the history, and the name of that measurement."""
 EXPLAINED = {
@@ -125,6 +129,8 @@ def draw(name: str) -> None:
     if not picture.exists() or picture.stat().st_mtime < summary.stat().st_mtime:
         write_report(RUNS / name)
         picture.write_bytes((RunDirectory(RUNS / name).report / "outline.png").read_bytes())
+        if name in FROM_ABOVE:
+            draw_plan(RUNS / name, IMAGES / f"{name}_above.png")
 
 
 def page(name: str) -> str:
@@ -136,6 +142,8 @@ def page(name: str) -> str:
     lines += [f"mpmkit run {name}.json", "```", "", "## Apparatus and material", ""]
     lines += table(["parameter", "value", "meaning"], [apparatus(key, entry) for key, entry in given.items()])
     lines += ["", "## What the run gives", "", f"![{title}](../images/lab/{name}.png)", ""]
+    if name in FROM_ABOVE:
+        lines += [f"![{title}, from above](../images/lab/{name}_above.png)", ""]
     lines += table(
         ["reported", "value", "meaning"],
         [

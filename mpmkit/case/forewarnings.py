@@ -31,6 +31,8 @@ ENOUGH_IN_3D = 27
 """Particles per cell, see docs/stability/long_shear.md."""
 ENOUGH_OF_A_WALL = 3.0
 """Cells: a wall with material on both sides needs one and a half for each, as far as splines reach."""
+SURELY_HELD = 2**0.5
+"""Cells: a bar of this diameter has a node in it wherever it stands, in a scene in which it is a disc."""
 NOTICED = 0.1
 """Least part of gravity directed away from a wall that gives a sentence."""
 
@@ -167,7 +169,12 @@ def _thin(case: Case) -> Iterator[str]:
     """Walls with material on both sides in which weights of the two sides overlap."""
     for name, wall in case.walls.items():
         cells = audit.placed(wall.surface, case.space_).thickness / case.grid.cell_size
-        if cells < ENOUGH_OF_A_WALL * (1 - ROUNDING):
+        if cells < SURELY_HELD * (1 - ROUNDING):
+            yield (
+                f"walls.{name} is {cells:.2g} cells thick: a wall acts through the nodes in it, and a bar of "
+                "fewer than 1.41 cells may have none, and let material through; make the cells smaller"
+            )
+        elif cells < ENOUGH_OF_A_WALL * (1 - ROUNDING):
             yield (
                 f"walls.{name} is {cells:.2g} cells thick: the nodes in it that belong to its other side are "
                 "within reach of the material, so the pressure on it can be wrong by a tenth, and energy can "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ..output.summary import UNITS
 from .formula import FUNCTIONS
@@ -38,13 +38,28 @@ class _Asked:
 
     def depth(self, *place: float) -> float:
         axes = self._axes[:-1]
-        domain = [self._case.grid.domain[axis] for axis in axes]
-        inside = all(low <= x <= high for x, (low, high) in zip(place, domain, strict=False))
-        if not 1 <= len(place) <= len(axes) or not inside:
-            (low, high), *across = domain
+        if not 1 <= len(place) <= len(axes) or not self._within(place):
+            (low, high), *across = self._domain()
             also = "".join(f" and, if you like, one along y, from {a:g} to {b:g} m" for a, b in across)
             raise ValueError(f"depth takes one place along {axes[0]}, from {low:g} to {high:g} m{also}")
         return 1.0
+
+    def surface(self, *place: float) -> float:
+        axes = self._axes[:-1]
+        if len(place) != len(axes) or not self._within(place):
+            places = [
+                f"one place along {axis}, from {low:g} to {high:g} m"
+                for axis, (low, high) in zip(axes, self._domain(), strict=True)
+            ]
+            raise ValueError(f"surface takes {' and '.join(places)}")
+        return 1.0
+
+    def _domain(self) -> list[list[float]]:
+        """Ends of the horizontal axes."""
+        return [self._case.grid.domain[axis] for axis in self._axes[:-1]]
+
+    def _within(self, place: Sequence[float]) -> bool:
+        return all(low <= x <= high for x, (low, high) in zip(place, self._domain(), strict=False))
 
     def width(self, *place: float) -> float:
         axes = self._axes

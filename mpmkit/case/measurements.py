@@ -68,8 +68,8 @@ class Measurement(Model):
     """A number that is computed for every row of the history."""
 
     formula: str = Field(
-        description="arithmetic over variables of the history, measurements above it, depth(x), width(x), "
-        "front(), force('wall', 'z'), torque('wall'), outflow('sink')"
+        description="arithmetic over variables of the history, measurements above it, depth(x), surface(x), "
+        "width(x), front(), force('wall', 'z'), torque('wall'), outflow('sink')"
     )
     unit: str = Field(description="its unit; 1 for a plain number")
     description: str = Field(description="what it is; the label of its plots")
@@ -78,7 +78,7 @@ class Measurement(Model):
 Functions = Mapping[str, Callable[..., float]]
 
 
-LOOKS = ("depth", "width", "front", "force", "torque", "outflow")
+LOOKS = ("depth", "surface", "width", "front", "force", "torque", "outflow")
 """Functions that look at the scene."""
 MEANS = ("force", "torque", "outflow")
 """Those that are means since the last row of the history, so that they have no value between rows."""

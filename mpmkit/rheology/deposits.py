@@ -14,6 +14,14 @@ c is π for a layer that spreads along x only (plane strain), and √3 π/2 for 
 directions. A spreading cone is between the two. Dubash, Balmforth, Slim & Cochard 2009, J. Non-Newtonian
 Fluid Mech. 158, derive such a correction. Equation (1) has c = 0; its deposit is too long, by terms of the
 order of depth over length.
+
+Bars that stand in the layer hold it back, too. A rough bar of the diameter d across which a plastic material
+flows in its plane takes B τ0 d for each metre of its length, B = 4√2 + 2π (Randolph & Houlsby 1984,
+Géotechnique 34, exact far from other bars). The shear stress of the floor leaves the rest of the yield
+stress for this, √(τ0² - τ²), of which the mean over the depth is π/4 τ0, as in c. So bars at intervals of p
+give the layer a step
+
+    h_before - h_behind = π/4 B (d/p) s                             (3)
 """
 
 from __future__ import annotations
@@ -25,6 +33,8 @@ PLANE = math.pi
 """c of a layer that spreads along one direction."""
 BIAXIAL = math.sqrt(3) * math.pi / 2
 """c of a layer that spreads equally along both directions."""
+BAR = 4 * math.sqrt(2) + 2 * math.pi
+"""B of equation (3)."""
 STEPS = 2000
 ROUNDS = 3
 """Iterations for the force of the ends of a closed channel; it hardly changes with the depths."""
@@ -76,8 +86,65 @@ def channel_length(volume: float, sink: float, width: float = math.inf, stretchi
     return _solve(found, volume, sink, stretching)
 
 
+def bar_step(diameter: float, interval: float, sink: float) -> float:
+    """How much deeper, m, the layer is before a row of bars than behind it, by equation (3).
+
+    Args:
+        diameter: d, m.
+        interval: p, m, from bar to bar.
+        sink: s, m.
+    """
+    return math.pi / 4 * BAR * diameter / interval * sink
+
+
+def ring_spread(
+    volume: float, sink: float, stretching: float, ring: float, step: float
+) -> tuple[float, Callable[[float], float]]:
+    """Diameter, m, of the round deposit of a volume that has flowed through a ring of bars, and its depth, m,
+    as a function of the distance from the axis, m.
+
+    Equation (2) holds outside and inside of the ring; at the ring the depth changes by the step of the bars.
+    A deposit that does not reach the ring is that of ``cone_spread``.
+
+    Args:
+        volume: m³.
+        sink: s, m.
+        stretching: c.
+        ring: radius of the ring, m.
+        step: of ``bar_step``, m.
+    """
+
+    def behind(start: float, way: float) -> float:
+        """Depth at a distance behind a place of the depth ``start``."""
+        half = stretching * sink / 2
+        return half + math.sqrt((start - half) ** 2 + 2 * sink * way)
+
+    def depth(radius: float, end: float) -> float:
+        if radius >= end:
+            return 0.0
+        front = stretching * sink
+        if radius >= ring or end <= ring:
+            return behind(front, end - radius)
+        return behind(behind(front, end - ring) + step, ring - radius)
+
+    def held(end: float) -> float:
+        return _integral(lambda r: 2 * math.pi * r * depth(r, end), 0.0, end)
+
+    high = ring
+    while held(high) < volume:
+        high *= 2
+    end = _bisect(lambda end: held(end) - volume, 0.0, high)
+    return 2 * end, lambda radius: depth(radius, end)
+
+
 def box_depths(
-    area: float, length: float, sink: float, width: float = math.inf, stretching: float = 0.0
+    area: float,
+    length: float,
+    sink: float,
+    width: float = math.inf,
+    stretching: float = 0.0,
+    step: float = 0.0,
+    bars: float = 0.0,
 ) -> tuple[float, float]:
     """Depths, m, at the back and at the end of a closed channel that material has filled to its end.
 
@@ -90,15 +157,20 @@ def box_depths(
         length: m, of the channel.
         sink, width: as of ``channel_length``.
         stretching: c of the two ends.
+        step: of the depth at a row of bars, as of ``bar_step``, m.
+        bars: distance of the bars from the back wall, m.
     """
 
     def depths(end: float, s: float) -> tuple[float, float]:
         """Depth at the back, and area, for a depth at the end: h dh/dx = -s (1 + 2h/b), second order."""
-        h, step, filled = end, length / STEPS, 0.0
-        for _ in range(STEPS):
-            middle = h + step / 2 * s * (1 + 2 * h / width) / h
-            following = h + step * s * (1 + 2 * middle / width) / middle
-            filled += (h + following) / 2 * step
+        h, dx, filled = end, length / STEPS, 0.0
+        at_bars = round((length - bars) / dx)
+        for k in range(STEPS):
+            if k == at_bars:
+                h += step
+            middle = h + dx / 2 * s * (1 + 2 * h / width) / h
+            following = h + dx * s * (1 + 2 * middle / width) / middle
+            filled += (h + following) / 2 * dx
             h = following
         return h, filled
 

@@ -11,10 +11,12 @@ import numpy as np
 from .deposits import (
     BIAXIAL,
     PLANE,
+    bar_step,
     box_depths,
     channel_length,
     cone_spread,
     drop_spread,
+    ring_spread,
     slope_length,
 )
 from .funnels import SLICES, Sections, circles, flow, flow_time, rectangles
@@ -79,6 +81,17 @@ def _ratio(p: Given, stretching: float) -> float:
     area = p["column_width"] * p["column_height"]
     back, end = box_depths(area, p["channel_length"], sink(p), stretching=stretching)
     return end / back
+
+
+def _ring(p: Given) -> tuple[float, Callable[[float], float]]:
+    interval = 2 * math.pi * p["ring_radius"] / (4 * p["bars_in_quarter"])
+    step = bar_step(p["bar_diameter"], interval, sink(p))
+    return ring_spread(_cone_volume(p), sink(p), BIAXIAL, p["ring_radius"], step)
+
+
+def _ring_step(p: Given) -> float:
+    _, depth = _ring(p)
+    return depth(0.0) - depth(p["outside"])
 
 
 def _cone_slump(p: Given, uniaxial: float) -> float:
@@ -168,6 +181,11 @@ def _filling(p: Given) -> float:
     return p["mass"] / (p["density"] * math.pi * p["form_radius"] ** 2)
 
 
+def _filament(p: Given) -> float:
+    nozzle = math.pi / 4 * p["nozzle_diameter"] ** 2
+    return p["layers"] * nozzle * p["extrusion_speed"] / p["nozzle_speed"]
+
+
 def _tube(p: Given) -> float:
     return tube_gradient(p["tube_radius"], p["mean_speed"], p["yield_stress"], p["plastic_viscosity"])
 
@@ -198,6 +216,11 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("relative_slump", "slices, Pashias et al. 1996: 1 - 2τ' (1 - ln 2τ')", _cylinder_slump, 0.05)
     ],
     "l_box": _layer("passing_ratio", _ratio, PLANE, 0.1),
+    "j_ring": [
+        Formula("j_ring_flow", f"{STRETCHED}, with a step at the bars", lambda p: _ring(p)[0], 0.08),
+        Formula("blocking_step", "the same: the middle above the outside", _ring_step, None),
+        Formula("j_ring_flow", "the same without a ring", lambda p: _cone(p, BIAXIAL), None),
+    ],
     "lcpc_box": _layer("flow_length", _channel, PLANE, 0.05),
     "bostwick": _layer("reading", lambda p, c: _channel(p, c) - p["reservoir_length"], PLANE, 0.08),
     "slope": _layer("front", _slope, PLANE, 0.1),
@@ -220,6 +243,9 @@ FORMULAS: dict[str, list[Formula]] = {
     ],
     "pour_into_form": [
         Formula("mean_depth", "the volume that is poured over the area of the form, exact", _filling, 0.02)
+    ],
+    "printed_filament": [
+        Formula("cross_section", "what is pushed out, (π D²/4) U/V for each layer, exact", _filament, 0.02)
     ],
     "tube_extrusion": [Formula("pressure_gradient", "Buckingham & Reiner, exact", _tube, 0.03)],
     "coaxial_cylinders": [Formula("torque_of_cylinder", "Reiner & Riwlin, exact", _coaxial, 0.03)],

@@ -1,16 +1,19 @@
-"""The functions for measurements of a case: depth, front, the forces of walls, and what sinks take."""
+"""The functions for measurements of a case: depth, surface, front, forces of walls, and what sinks take."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..case.measurements import NAMES, Measurement, functions, means, measured
 from ..kernels.extents import extents
+from ..solver.crowding import Crowding, crowding
 from ..solver.simulation import Simulation
+from ..solver.surface import mean_top
 
 
 def measurements(simulation: Simulation, row: Mapping[str, Any]) -> dict[str, float]:
@@ -52,22 +55,55 @@ class _Look:
         volume = p.volume / (2 * np.pi * p.position[:, 0]) if s.case.space_.radial else p.volume
         area = float(np.prod(grid.extent[len(place) : -1]))
         for axis, x in enumerate(place):
-            part, length = self._share(axis, x - grid.lower[axis])
-            volume, area = volume * part, area * length
+            low, high = self._strip(axis, x - grid.lower[axis])
+            volume, area = volume * self._share(axis, low, high), area * (high - low)
         return float(volume.sum() / area)
 
-    def _share(self, axis: int, middle: float) -> tuple[np.ndarray, float]:
-        """Part of each particle's box, (n,), that is within half a cell of a place along an axis of the grid,
-        and the length, m, of that strip."""
+    def _strip(self, axis: int, middle: float) -> tuple[float, float]:
+        """Ends, m, of what is within half a cell of a place along an axis of the grid.
+
+        Beside a plane of symmetry it is the whole cell in front of the plane. Half a cell has a single row of
+        particles there, and in a corner a single column: the grid does not see how full that is. The surface
+        is level at the plane, so that the depth of the cell is that at the plane, to second order.
+        """
+        grid = self._simulation.grid
+        end, half = float(grid.extent[axis]), grid.cell_size / 2
+        if self._is_plane(axis, "min"):
+            middle = max(middle, half)
+        if self._is_plane(axis, "max"):
+            middle = min(middle, end - half)
+        return max(middle - half, 0.0), min(middle + half, end)
+
+    def _is_plane(self, axis: int, side: str) -> bool:
+        """Whether an end of an axis of the grid is a plane of symmetry, or the axis of revolution."""
+        case = self._simulation.case
+        axis_of_revolution = case.space_.radial and axis == 0 and side == "min"
+        return axis_of_revolution or case.grid.faces.get(f"{case.space_.axes[axis]}_{side}") == "symmetry"
+
+    def _share(self, axis: int, low: float, high: float) -> np.ndarray:
+        """Part of each particle's box, (n,), that is in a strip of the domain along an axis of the grid. What
+        of a box is behind a face is mirrored at it, so that no volume is lost."""
         s = self._simulation
-        p, grid, end = s.particles, s.grid, float(s.grid.extent[axis])
-        low, high = max(middle - grid.cell_size / 2, 0.0), min(middle + grid.cell_size / 2, end)
-        half = np.minimum(p.box[:, axis], grid.cell_size / 2)
-        # The part of a box behind a face is moved in front of it, so that no volume is lost.
-        left = np.maximum(p.position[:, axis] - half, 0.0)
-        right = np.minimum(p.position[:, axis] + half, end)
-        part = np.clip(np.minimum(right, high) - np.maximum(left, low), 0.0, None) / (right - left)
-        return part, high - low
+        p, end = s.particles, float(s.grid.extent[axis])
+        x, half = p.position[:, axis], np.minimum(p.box[:, axis], s.grid.cell_size / 2)
+        images = (x, x - end, x + end) if s.grid.periodic[axis] else (x, -x, 2 * end - x)
+        parts = [np.clip(np.minimum(i + half, high) - np.maximum(i - half, low), 0.0, None) for i in images]
+        return np.sum(parts, axis=0) / (2 * half)
+
+    def surface(self, *place: float) -> float:
+        """Height of the free surface above the lower face of the domain, m, mean within a cell of a vertical
+        line; its place along the first axis, m, and in 3-D along y. NaN where the material is thinner than a
+        cell."""
+        s, found = self._simulation, self._crowding
+        if found is None:
+            return math.nan
+        centre = np.array(place) - s.grid.lower[:-1]
+        return mean_top(found, centre, s.case.space_.radial and centre[0] == 0)
+
+    @cached_property
+    def _crowding(self) -> Crowding | None:
+        s = self._simulation
+        return crowding(s.particles, s.grid, s.case.space_.radial)
 
     def front(self) -> float:
         """End of the material along the first axis, m; boxes count as in ``spread_diameter``."""

@@ -188,3 +188,17 @@ def test_the_flow_rate_of_a_full_marsh_cone(validate, yield_stress):
     (formula,) = FORMULAS["marsh_cone"]
     expected = formula.value(given("marsh_cone") | {"yield_stress": yield_stress})
     validate(f"Marsh cone at {yield_stress:g} Pa: flow rate", found, close_to(expected, rel=formula.band))
+
+
+@pytest.mark.slow
+def test_bars_of_a_ring_add_the_step_that_their_force_says(validate):
+    """Randolph & Houlsby's force on 16 bars; without bars the deposit is higher in its middle as well.
+
+    The band is that of two heights, each known to some 3 mm, of a step of 5 mm.
+    """
+    _, step, _ = FORMULAS["j_ring"]
+    p = given("j_ring")
+    expected = step.value(p) - step.value(p | {"bar_diameter": 0.0})
+    without = measured("j_ring", "blocking_step", "parameters.bar_height=0")
+    added = measured("j_ring", "blocking_step") - without
+    validate("J-ring: height that its bars hold back, m", added, close_to(expected, rel=0.5))
