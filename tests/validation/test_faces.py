@@ -210,7 +210,7 @@ def slide(angle, coefficient, shape="cpgimp", order="musl", until=0.6, space=2, 
     """A stiff block that starts at rest on an incline.
 
     Returns:
-        Its mean acceleration along the incline, m/s², and its distance, m, after half the time and after all of it.
+        Its mean acceleration along the incline, m/s², and its distance, m, after half the time and all of it.
     """
     gravity = [G * math.sin(angle), -G * math.cos(angle)]
     lower, upper, domain = [2, 0], [8, 3], [[0, 60], [0, 7]]
