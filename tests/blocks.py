@@ -1,4 +1,4 @@
-"""Particles in the order of ``mpmkit.kernels.sort``, for tests of what runs over it."""
+"""Particles in the order of ``mpmkit.kernels.sort``, for tests of the kernels that use it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mpmkit.kernels import sort
 
 @dataclass
 class Blocks:
-    """What became of particles in given cells."""
+    """Particles in given cells after a sort."""
 
     order: np.ndarray
     """(n,) the particles, group by group, colour by colour, block by block, cell by cell"""

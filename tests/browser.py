@@ -1,4 +1,4 @@
-"""A real browser without a window, for tests of pages; what it logs and asks for can be read."""
+"""A real headless browser for tests of pages; its console errors and its requests can be read."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Window:
         self.until("document.documentElement.dataset.ready === 'yes'")
 
     def run(self, script: str, *arguments):
-        """What a script returns."""
+        """The result of a script."""
         return self.driver.execute_script(script, *arguments)
 
     def until(self, condition: str, seconds: float = 10.0) -> None:
@@ -78,7 +78,7 @@ class Window:
         return ActionChains(self.driver)
 
     def errors(self) -> list[str]:
-        """What the console has been told since the last call that is an error."""
+        """Errors in the console since the last call."""
         return [line["message"] for line in self.driver.get_log("browser") if line["level"] == "SEVERE"]
 
     def requests(self) -> list[str]:
@@ -90,7 +90,7 @@ class Window:
 
 @contextmanager
 def window() -> Iterator[Window]:
-    """A browser of its own, which is closed in the end."""
+    """A new browser, which is closed at the end of the block."""
     browser, driver = programs()
     from selenium.webdriver import Chrome, ChromeOptions
     from selenium.webdriver.chrome.service import Service

@@ -1,5 +1,5 @@
-"""Set up before anything is imported: two threads, however few cores, so that tests of determinism can fail,
-and no plug-ins but mpmkit's own, whatever else is installed beside it."""
+"""Settings made before any import: two threads even on one core, so that tests of determinism can fail, and
+only the built-in plug-ins."""
 
 import os
 
@@ -22,6 +22,38 @@ def pytest_cmdline_main(config):
         config.option.numprocesses = "auto"
         if config.option.dist == "no":
             config.option.dist = "worksteal"
+
+
+COMPILE_NOTHING = {
+    "test_body_shape_kit.py", "test_case.py", "test_case_values.py", "test_code_cache.py",
+    "test_distances.py", "test_examples.py", "test_fit_files.py", "test_geometry.py",
+    "test_geometry_between.py", "test_mesh_files.py", "test_meshes.py", "test_messages.py",
+    "test_new_plugin.py", "test_study_files.py", "test_surfaces_and_contacts.py",
+}  # fmt: skip
+"""Files whose tests need few kernels or none."""
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items):
+    """Of two processes the second begins with what compiles nothing.
+
+    Each takes one half of the tests. If both began with simulations, they would compile the same kernels at
+    the same time; so the second finds those of the first in the cache.
+    """
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return
+    first = [item for item in items if item.path.name in COMPILE_NOTHING]
+    others = [item for item in items if item.path.name not in COMPILE_NOTHING]
+    middle = len(items) // 2
+    items[:] = others[:middle] + first + others[middle:]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_ahead():
+    """No processes that compile ahead of a run: the other cores have tests of their own."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("mpmkit.running.ahead.MOST", 0)
+        yield
 
 
 @pytest.fixture(autouse=True)

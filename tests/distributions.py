@@ -1,4 +1,4 @@
-"""Distributions of plug-ins in a process of their own, found there as if they were installed."""
+"""Distributions of plug-ins in a new process, in which they are found as if they were installed."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Scenes with one plug-in that is put in the place of a built-in one, and what is said of it."""
+"""Scenes in which a plug-in of the test replaces a built-in one, and the message about it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def simulation(kind, plugin):
 
 
 def blamed(kind, plugin, steps=3):
-    """What is said of it when the case is read, set up, or within a few steps."""
+    """The message about the plug-in when the case is read, set up, or run for a few steps."""
 
     def run():
         made = simulation(kind, plugin)

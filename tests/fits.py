@@ -1,4 +1,4 @@
-"""Fits that cost little: a closed form in the place of runs, and a tiny block that flows apart."""
+"""Fast fits: a closed form instead of runs, and a tiny block that spreads."""
 
 import copy
 import math
@@ -44,12 +44,13 @@ FIRST = 0.2
 
 
 def final_spread(tau0):
-    """m; the fifth root of Roussel and Coussot, and nothing of the viscosity."""
+    """Final spread, m, by the formula of Roussel and Coussot; it does not depend on the viscosity."""
     return 0.6 * (100 / tau0) ** 0.2
 
 
 def spread(time, tau0, stress):
-    """D(t), m: to its end with a time that grows with the stress of the flow beyond yield."""
+    """D(t), m: exponential approach to the final spread, with a time that grows with the stress beyond
+    yield."""
     end = final_spread(tau0)
     return end - (end - FIRST) * np.exp(-np.asarray(time) / time_scale(stress))
 

@@ -1,4 +1,4 @@
-"""Pairwise products: enough where what is tested depends on no more than two choices at once."""
+"""Pairwise products, for tests of faults that depend on at most two choices at once."""
 
 from __future__ import annotations
 

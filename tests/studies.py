@@ -3,14 +3,17 @@
 import copy
 import os
 import signal
+import tempfile
+import time
 from concurrent.futures import Executor, Future
+from pathlib import Path
 
 from test_cli import CASE, one_line, status
 
 from mpmkit.study import parse_study
 from mpmkit.study.work import Outcome
 
-__all__ = ["CASE", "DEADLY", "LEAVES", "NOTHING", "Now", "fragile", "one_line", "status", "study"]
+__all__ = ["CASE", "DEADLY", "LEAVES", "NOTHING", "Now", "fragile", "one_line", "patient", "status", "study"]
 
 LEAVES = {"grid.faces.x_max": "open", "bodies.0.velocity": [200, 0]}
 """Changes with which the material leaves through an open face."""
@@ -26,7 +29,7 @@ def study(**keys):
 
 
 class Now(Executor):
-    """Runs what it is given at once, and counts."""
+    """An executor that runs its work at once in this process, and records it."""
 
     def __init__(self):
         self.ran = []
@@ -42,7 +45,17 @@ class Now(Executor):
 
 
 def fragile(data, threads, page):
-    """In the place of a run: nothing, or the end of the process."""
+    """Instead of a run: does nothing, or ends the process."""
     if data["until"] == DEADLY:
         os.kill(os.getpid(), signal.SIGKILL)
+    return Outcome("finished", "", {}, {"wall_seconds": 0.0}, b"")
+
+
+def patient(data, threads, page):
+    """In the place of a run: it begins, and ends once there is a file ``killed`` in $TMPDIR."""
+    with tempfile.TemporaryDirectory() as place:
+        (Path(place) / "begun").touch()
+        deadline = time.monotonic() + 120
+        while not (Path(os.environ["TMPDIR"]) / "killed").exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
     return Outcome("finished", "", {}, {"wall_seconds": 0.0}, b"")

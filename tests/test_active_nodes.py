@@ -1,4 +1,5 @@
-"""The nodes that particles can reach: none too few, ghosts and images alike, and it changes no result."""
+"""The nodes that particles can reach: all of them are processed, ghosts and images included, with the same
+results."""
 
 from __future__ import annotations
 
@@ -60,7 +61,7 @@ def test_every_node_that_a_particle_can_touch_is_in_a_row(faces, seed):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("faces", FACES, ids=str)
-def test_ghosts_and_their_images_are_listed_once_and_both_are_gone_through(faces, seed):
+def test_ghosts_and_their_images_are_listed_once_and_both_are_processed(faces, seed):
     grid, window, boxes, active = reached(faces, [12, 9, 7][: len(faces)], seed)
     inside = np.zeros(window.shape[: grid.dim], dtype=bool)
     for begin, end in active.rows:
@@ -141,7 +142,7 @@ def test_no_mass_is_lost_across_a_narrow_period(size, cells):
     ids=["walls", "periodic"],
 )
 def test_leaving_out_the_others_changes_no_bit(faces, order, monkeypatch):
-    """A block that is thrown at a corner and back, on all nodes of the window and on those in reach."""
+    """A block is thrown at a corner and back: on all nodes of the window, and on the nodes in reach."""
     case = {
         "space": "3d",
         "until": 1.0,
@@ -175,7 +176,7 @@ def test_leaving_out_the_others_changes_no_bit(faces, order, monkeypatch):
         )
 
 
-def test_nothing_is_ever_put_on_a_node_out_of_reach():
+def test_no_value_is_mapped_to_a_node_out_of_reach():
     """A small body flies between two at rest, so far inside its block that it is not sorted again."""
 
     def block(lower, upper, velocity):

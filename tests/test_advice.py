@@ -1,4 +1,5 @@
-"""Cheaper models of a scene: the same scene indeed, offered where they are admissible, and their errors."""
+"""Cheaper models of a scene: they model the same scene, they are offered only where they are admissible, and
+their errors are known."""
 
 from __future__ import annotations
 
@@ -107,7 +108,7 @@ def test_a_quarter_model_can_be_turned_but_not_cut_again():
 
 @pytest.mark.parametrize("file", sorted(CASES.glob("*.json")), ids=lambda file: file.stem)
 def test_the_options_as_typed_make_the_model(file):
-    """And each keeps to the rules of cases: none is refused by the reader."""
+    """Each option is valid: the reader of cases refuses none."""
     case = load_case(file)
     for model in cheaper_models(case):
         assert resolved(load_case(file, model.options)) == resolved(model.case), model.name
@@ -131,7 +132,7 @@ def test_together_has_the_cheapest_of_every_kind():
     assert together.bodies[0].material.sound_speed.mach == 0.1
 
 
-def test_where_there_is_nothing_to_save_there_is_no_advice():
+def test_a_cheap_case_gets_no_advice():
     assert cheaper_models(load_case(CASES / "slump_fast.json")) == []
     assert cheaper_models(load_case(CASES / "vibrating_bar.json")) == []
 
@@ -222,7 +223,7 @@ UNKNOWN = {
 
 
 @pytest.mark.parametrize("changes", UNKNOWN.values(), ids=UNKNOWN)
-def test_what_is_no_axis_of_the_study_is_not_known(changes):
+def test_a_case_that_differs_in_something_else_has_no_known_error(changes):
     assert expected_error(load_case(CASES / "slump.json", changes)) is None
 
 
@@ -235,17 +236,17 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("changes", KNOWN.values(), ids=KNOWN)
-def test_what_changes_nothing_of_the_flow_leaves_the_error_known(changes):
+def test_a_change_without_influence_on_the_flow_keeps_the_error_known(changes):
     law = "relaxed" if changes[0] == RELAXED[0] else "exact"
     assert expected_error(load_case(CASES / "slump.json", changes)) == member(law=law)
 
 
-def test_nothing_is_known_of_other_scenes():
+def test_other_scenes_have_no_known_error():
     for name in ("two_discs", "film", "slump_ferreira", "slump_as_published", "vibrating_bar"):
         assert expected_error(load_case(CASES / f"{name}.json")) is None, name
 
 
-def test_nothing_is_known_of_a_scene_with_walls():
+def test_a_scene_with_walls_has_no_known_error():
     """The study has no walls; the lifted mould is its slump otherwise."""
     lifted = load_case(CASES / "slump_lifted.json")
     assert expected_error(lifted) is None
@@ -266,7 +267,7 @@ def test_the_study_that_plan_knows_is_the_shipped_one():
     assert study["laws"]["relaxed"] == shipped["vary"]["law"]["relaxed"]
 
 
-def test_what_the_study_saw_fail_is_cautioned_against():
+def test_combinations_that_failed_in_the_study_get_a_caution():
     """Every combination of schemes of which a member was stopped, and none of which all have finished."""
     kinds = ("shape", "order", "volumetric")
     stopped = {tuple(row[kind] for kind in kinds) for row in rows() if row["fate"] != "finished"}
@@ -276,7 +277,7 @@ def test_what_the_study_saw_fail_is_cautioned_against():
         assert ("throw" in said) == (chosen in stopped), chosen
 
 
-def test_more_that_is_known_to_fail():
+def test_other_known_failures_get_a_caution():
     stick = ['grid.faces={"z_min": "stick"}']
     assert "locks" in " ".join(cautions(load_case(CASES / "slump.json", [*stick, "scheme.volumetric=own"])))
     assert cautions(load_case(CASES / "slump.json", stick)) == []
@@ -296,7 +297,8 @@ def test_more_that_is_known_to_fail():
 
 
 def test_a_film_is_cautioned_of_what_goes_wrong_in_it_and_of_nothing_else():
-    """Neither a yield stress nor own volumes help a film that flows for long; and they do not lock in it."""
+    """A film that flows for long gets the caution about density, with a yield stress and with own volumes
+    too; it does not lock."""
     film = ["scheme.redistribution=none"]
     assert cautions(load_case(CASES / "film.json", film)) == []
     for volumetric in ("own", "nodal-average"):
@@ -321,7 +323,7 @@ def test_the_plan_counts_what_cheaper_models_cost(monkeypatch):
 
 
 def test_the_commands_run_the_case_as_it_was_asked_for(monkeypatch, tmp_path, capsys):
-    """What ``plan`` prints is typed as it stands: other material, other time and all."""
+    """The printed commands repeat all options, such as another material or time."""
     monkeypatch.setattr("mpmkit.plan.cost.WORTH_ADVICE", 0.0)
     monkeypatch.setattr("mpmkit.plan.trial.TRIAL_SECONDS", 0.05)
     monkeypatch.chdir(tmp_path)

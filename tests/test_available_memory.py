@@ -1,4 +1,4 @@
-"""What a run may take: of the machine, its control group, its batch job, its address space."""
+"""Available memory: of the machine, the control group, the batch job, and the address space."""
 
 import json
 import subprocess

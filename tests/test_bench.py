@@ -1,4 +1,4 @@
-"""The benchmark: that it times what a run does, and says what it says it says."""
+"""The benchmark: it measures the work of a run, and its output has the documented entries."""
 
 import json
 
@@ -51,7 +51,7 @@ def test_kernels_add_up_to_the_step(small):
     assert sum(timing.kernels.values()) == pytest.approx(1e9 / timing.particle_steps_per_second)
 
 
-def test_the_stopwatch_leaves_no_trace(small):
+def test_the_stopwatch_restores_the_original_functions(small):
     names = set(vars(small.operations))
     timed(small, "small", 1, 0.05)
     assert set(vars(small.operations)) == names

@@ -20,7 +20,7 @@ FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 1.0, "sound_speed":
 
 
 class Ball(BodyShape):
-    """A ball that only knows how far its surface is."""
+    """A ball with a distance function only."""
 
     name = "ball-of-the-tests"
     api_version = 2
@@ -128,7 +128,7 @@ def test_its_volume_is_computed_from_the_distance(space, volume, size):
     assert ball.part(upper, upper + 1, space) == 0
 
 
-def test_what_is_wrong_is_said():
+def test_a_wrong_parameter_has_its_sentence():
     case = scene("sphere").model_dump(mode="json", exclude_unset=True)
     case["walls"]["bowl"]["surface"]["shape"]["kind"] = "bal"
     with pytest.raises(CaseError, match=r'walls\.bowl\.surface\.shape\.kind is "bal"; it must be'):
@@ -154,7 +154,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("method", FAULTS)
-def test_one_at_fault_is_told(method):
+def test_a_faulty_shape_is_named(method):
     wrong, said = FAULTS[method]
     bad = type("Bad", (Ball,), {method: wrong, "__module__": __name__})
     with pytest.raises(PluginStop) as stop:

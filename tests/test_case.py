@@ -28,7 +28,7 @@ def test_too_much_memory_is_refused_before_anything_is_made():
     assert "fewer rows" in sentence(require_memory, parse_case(kept))
 
 
-def test_bodies_far_apart_are_told_what_takes_the_memory():
+def test_the_sentence_about_bodies_far_apart_names_the_cause():
     far = changed("grid.domain", {"x": [-25_000, 25_000], "z": [0, 25_000]})
     other = copy.deepcopy(far["bodies"][0])
     other["shape"] |= {"lower": [20_000, 20_000], "upper": [20_000.4, 20_000.4]}
@@ -70,13 +70,13 @@ def test_a_resolved_case_says_where_a_body_stands_and_can_be_run():
         ('{"space": "\\ud800"}', "is not valid JSON"),
     ],
 )
-def test_a_bad_file_is_told_of(content, expected, tmp_path):
+def test_a_bad_file_has_its_sentence(content, expected, tmp_path):
     path = tmp_path / "case.json"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     assert expected in sentence(load_case, path)
 
 
-def test_a_file_that_cannot_be_read_is_told_of(tmp_path):
+def test_a_file_that_cannot_be_read_has_its_sentence(tmp_path):
     assert "No such file" in sentence(load_case, tmp_path / "missing.json")
     assert "Is a directory" in sentence(load_case, tmp_path)
     assert "cannot be read" in sentence(load_case, "a\0b")
@@ -142,7 +142,7 @@ def test_overrides():
         ),
     ],
 )
-def test_a_bad_override_is_told_of(override, expected):
+def test_a_bad_override_has_its_sentence(override, expected):
     assert expected in sentence(parse_case, GOOD, [override])
 
 

@@ -1,4 +1,5 @@
-"""The run directory of a case with a mesh is enough, wherever it lies, whatever became of the mesh."""
+"""The run directory of a case with a mesh is complete: it can be moved, and the original mesh can be
+deleted."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 import xarray
 from mpmkit_plugins.body_shapes.mesh import Mesh
+from studies import Now
 
 import mpmkit
 from mpmkit.case import load_case, parse_case
@@ -87,26 +89,33 @@ def crash_after(monkeypatch, seconds: float):
     monkeypatch.setattr(Simulation, "advance", advanced)
 
 
-@pytest.fixture
-def finished(tmp_path) -> Path:
-    """A run directory that was moved, and whose mesh is gone."""
-    file = ball(tmp_path / "cad" / "ball.stl")
-    mpmkit.run(parse_case(scene(file)), tmp_path / "there" / "run", threads=1)
-    shutil.rmtree(tmp_path / "cad")
-    return (tmp_path / "there" / "run").rename(tmp_path / "run")
-
-
-@pytest.fixture
-def stopped(tmp_path, monkeypatch) -> Path:
-    """A run directory of a run that died, moved, beside ``whole``; its mesh is gone."""
-    file = ball(tmp_path / "cad" / "ball.stl")
-    mpmkit.run(parse_case(scene(file)), tmp_path / "whole", threads=1)
-    with monkeypatch.context() as patched:
+@pytest.fixture(scope="module")
+def made(tmp_path_factory) -> Path:
+    """A folder with the directories of a run that came to its end, ``whole``, and of one that died; the mesh
+    of both has been moved to ``elsewhere``."""
+    folder = tmp_path_factory.mktemp("made")
+    file = ball(folder / "cad" / "ball.stl")
+    mpmkit.run(parse_case(scene(file)), folder / "whole", threads=1)
+    with pytest.MonkeyPatch.context() as patched:
         crash_after(patched, 0.01)
         with pytest.raises(MemoryError):
-            mpmkit.run(parse_case(scene(file)), tmp_path / "there", threads=1, checkpoint_every=1e-9)
-    shutil.move(tmp_path / "cad", tmp_path / "elsewhere")
-    return (tmp_path / "there").rename(tmp_path / "run")
+            mpmkit.run(parse_case(scene(file)), folder / "died", threads=1, checkpoint_every=1e-9)
+    shutil.move(folder / "cad", folder / "elsewhere")
+    return folder
+
+
+@pytest.fixture
+def finished(made, tmp_path) -> Path:
+    """A run directory at another place than where it was made, whose mesh is gone: a copy for each test."""
+    return Path(shutil.copytree(made / "whole", tmp_path / "run"))
+
+
+@pytest.fixture
+def stopped(made, tmp_path) -> Path:
+    """The same of the run that died, beside ``whole`` and ``elsewhere``."""
+    for name in ("whole", "elsewhere"):
+        shutil.copytree(made / name, tmp_path / name)
+    return Path(shutil.copytree(made / "died", tmp_path / "run"))
 
 
 # --- The copy
@@ -195,7 +204,7 @@ def test_a_run_is_repeated_where_the_mesh_is_gone_and_the_directory_was_moved(
     same_bits(finished, again)
     assert (again / "case.json").read_text() == (finished / "case.json").read_text()
     assert files_in(again / "meshes") == files_in(finished / "meshes")
-    assert str(tmp_path) not in (finished / "case.json").read_text()
+    assert "cad" not in (finished / "case.json").read_text()
     write_report(finished)
     assert list((finished / "report").glob("*.png"))
 
@@ -296,7 +305,8 @@ def test_a_run_may_replace_the_one_that_its_case_and_its_mesh_are_from(finished,
 
 
 def test_a_copy_that_was_edited_may_replace_itself(finished):
-    """As the mesh of a new run, that is: it goes by its new content, and what it replaces is gone."""
+    """It counts as the mesh of a new run: the name follows from its new content, and the replaced run is
+    deleted."""
     (copy,) = (finished / "meshes").iterdir()
     ball(copy, 0.09)
     (finished / "meshes" / "mine.stl").write_text("the user's own")
@@ -392,7 +402,7 @@ def test_a_member_of_a_study_is_run_again_if_its_mesh_has_changed(tmp_path):
     store = Store(tmp_path / "study")
     store.open(load_study(path))
     (member,) = members_of(load_study(path))
-    execute([member], store, workers=1)
+    execute([member], store, executor=Now())
     Path(file).rename(tmp_path / "moved.stl")
     shutil.copy(tmp_path / "moved.stl", file)
     (member,) = members_of(load_study(path))

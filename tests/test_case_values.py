@@ -182,7 +182,7 @@ RADIAL = {
 @pytest.mark.parametrize(
     ("path", "value", "expected"), BAD, ids=[f"{path}-{k}" for k, (path, *_) in enumerate(BAD)]
 )
-def test_a_bad_value_is_told_of(path, value, expected):
+def test_a_bad_value_has_its_sentence(path, value, expected):
     def prepare():
         make_particles(parse_case(changed(path, value)))
 
@@ -198,7 +198,7 @@ def test_the_radial_axis_has_no_period(faces):
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
-def test_what_python_can_say_and_json_cannot_is_told_with_its_place(value):
+def test_a_value_that_only_python_allows_is_refused_with_its_place(value):
     expected = f"{value} is not a number that a case can have"
     assert f"until: {expected}" in sentence(parse_case, changed("until", value))
     assert f"bodies.0.shape.lower.1: {expected}" in sentence(
@@ -231,7 +231,7 @@ MAY_BE = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_whatever_stands_wherever_gives_one_sentence(place):
+def test_any_wrong_value_at_any_place_gives_one_sentence(place):
     for value in ANYTHING:
         if value in MAY_BE.get(place, []):
             parse_case(changed(place, value))
@@ -245,7 +245,7 @@ def test_more_errors_are_counted_not_listed():
     assert text.endswith("(and 1 more)")
 
 
-def test_what_a_misspelling_leaves_missing_is_not_counted():
+def test_a_key_missing_because_of_a_misspelling_is_not_counted():
     data = changed("grid.cellsize", 0.1)
     del data["grid"]["cell_size"]
     assert sentence(parse_case, data).endswith("did you mean 'cell_size'?")

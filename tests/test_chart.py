@@ -46,7 +46,7 @@ def errors(found):
     return {point.title: point.error for point in found.points}
 
 
-def test_the_finest_member_is_the_reference_unless_told(dataset):
+def test_the_finest_member_is_the_default_reference(dataset):
     found = chart(dataset, "spread_diameter")
     assert found.against == "the finest member, fine"
     assert errors(found) == pytest.approx(dict(zip(NAMES[:4], ERRORS, strict=False)))
@@ -60,7 +60,7 @@ def test_the_front_goes_with_the_cost(dataset):
     assert [(point.title, point.cost) for point in by_steps.front] == [("b", 1.0), ("c", 2.0)]
 
 
-def test_the_front_of_any_points_is_what_nobody_beats():
+def test_the_front_has_the_points_that_no_other_point_dominates():
     rng = np.random.default_rng(3)
     points = [Point(str(n), *map(float, rng.integers(1, 30, 2))) for n in range(200)]
     front = Chart("x", "steps", "y", points).front
@@ -99,7 +99,7 @@ def write(path, time, values, column="spread_diameter_m"):
 
 @pytest.mark.parametrize("rows", [2, 7, 11, 101])
 def test_a_file_is_taken_at_its_own_times(dataset, tmp_path, rows):
-    """A straight line between any rows; eleven others than the dataset's eleven are no special case."""
+    """The reference is interpolated linearly between its rows, also if it has as many rows as the dataset."""
     time = np.linspace(0, 1, rows) ** 2
     found = chart(dataset, "spread_diameter", write(tmp_path / "exact.csv", time, 1.0 + time))
     assert found.against == "exact.csv"
@@ -107,7 +107,8 @@ def test_a_file_is_taken_at_its_own_times(dataset, tmp_path, rows):
 
 
 def test_a_file_counts_where_both_have_values(dataset, tmp_path):
-    """Half of the time, half of the error, and the largest value is that of the half."""
+    """Only the common times count: half of the time, half of the error, and the largest value of that
+    half."""
     found = chart(dataset, "spread_diameter", write(tmp_path / "half.csv", [-1, 0.5], [0.0, 1.5]))
     expected = {name: 2 * error * 0.5 / 1.5 for name, error in zip(NAMES, ERRORS, strict=True)}
     assert errors(found) == pytest.approx(expected, abs=1e-12)
@@ -169,7 +170,7 @@ def test_bad_options_are_status_2(dataset, tmp_path, monkeypatch, capsys, option
     assert not list(tmp_path.glob("**/*.png"))
 
 
-def test_none_has_finished(dataset):
+def test_a_study_without_finished_members_has_no_chart(dataset):
     with pytest.raises(CaseError, match="no member of the study has finished"):
         chart(dataset.isel(member=slice(5, None)), "spread_diameter")
 

@@ -1,4 +1,5 @@
-"""``mpmkit … | head -1``: the reader is gone. A command ends without a message, a run goes to its end."""
+"""``mpmkit … | head -1``: when the reader has gone, a command ends without a message, and a run continues to
+its end."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Code just compiled and code that was kept give the same bits."""
+"""New compiled code and cached code give the same bits."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ REGULARISED = [
 
 
 def twice_in_processes_of_their_own(script, folder, *arguments):
-    """What each of the two prints: one that compiles, and one that finds its code."""
+    """The outputs of two processes: one compiles, the other one loads the cached code."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder), "NUMBA_NUM_THREADS": "1"}
     return [in_a_process_of_its_own(script, environment, *arguments) for _ in range(2)]
 
@@ -62,11 +62,9 @@ def in_a_process_of_its_own(script, environment, *arguments):
 
 
 def test_kernels_just_compiled_and_kernels_that_were_kept_agree_to_the_bit(capsys):
-    """The compiler goes over kept code once more: nothing may be left to its freedom to round otherwise.
-
-    The kernels with the most arithmetic: of two laws, and from particles to nodes and back. On a machine that
-    has no code yet, such as that of continuous integration, it is this process that has compiled them.
-    """
+    """Cached code passes through the compiler once more, which must not change the rounding. Tested on the
+    kernels with the most arithmetic: two laws, and the maps from particles to nodes and back. If there is no
+    cached code yet, as in continuous integration, this process compiles it."""
     exec(OF_THE_KERNELS, {})
     environment = {**os.environ, "NUMBA_NUM_THREADS": "1"}
     kept = in_a_process_of_its_own(OF_THE_KERNELS, environment)

@@ -1,4 +1,4 @@
-"""Folders of compiled code: their names, and what is forgotten."""
+"""Folders of compiled code: their names, and which ones are deleted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run needs is compiled ahead of it by other processes, and nothing depends on that they succeed."""
+"""Other processes compile the functions of a run ahead of it; the run does not depend on their success."""
 
 import json
 import subprocess

@@ -76,7 +76,7 @@ def test_drag_counts_all_that_the_wall_pushes_with(velocity, pressed, after):
 
 
 def test_along_the_normal_and_against_the_wall():
-    """A leaning wall that moves: only the part of v - w along n is taken up."""
+    """An inclined, moving wall: only the component of v - w along n changes."""
     n, t, w = np.array(LEAN), np.array([0.8, 0.6]), np.array([5.0, -1.0])
     found = solved("coulomb", w - 2 * n + 3 * t, {"coefficient": 0.25}, normal=LEAN, wall=w)
     np.testing.assert_allclose(found, w + 2.5 * t, atol=1e-15)
@@ -100,7 +100,7 @@ def test_navier_slip(length, inner, velocity, slip):
 
 
 def test_navier_slip_comes_to_the_slip_of_couette_flow():
-    """Layers of a Newtonian fluid, drawn at the top: u at the wall is U b / (b + h)."""
+    """Couette flow of a Newtonian fluid: the slip velocity at the wall is U b / (b + h)."""
     author = contact("navier-slip", slip_length=0.05)
     y = np.linspace(0, 0.1, 6)
     u = np.zeros(6)
@@ -119,7 +119,7 @@ def test_navier_slip_comes_to_the_slip_of_couette_flow():
 
 @pytest.mark.parametrize("kind", ["slip", "coulomb", "navier-slip", "stick"])
 def test_contact_is_decided_once_a_step(kind):
-    """What was pushed stays held until the next decision, and what was let go stays free."""
+    """A pushed node stays held until the next decision, and a released node stays free."""
     parameters = {
         "coulomb": {"coefficient": 0.1},
         "navier-slip": {"slip_length": 0.1},

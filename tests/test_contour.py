@@ -1,4 +1,4 @@
-"""What is drawn of a surface: where its distance is zero, on both sides, in two and three dimensions."""
+"""The drawn surface of a wall, where its distance is zero, in two and three dimensions."""
 
 import numpy as np
 import pytest

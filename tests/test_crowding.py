@@ -1,4 +1,4 @@
-"""What nodes have room for, and what becomes of J where there is more on them than that."""
+"""Volumes of nodes, and the correction of J where there is more material than volume."""
 
 from __future__ import annotations
 
@@ -82,15 +82,15 @@ def test_boxes_that_are_not_on_the_lattice_fill_them_as_well(space):
 
 
 @pytest.mark.parametrize("space", AXES)
-def test_where_there_is_room_nothing_is_crowded(space):
+def test_nodes_with_free_volume_are_not_crowded(space):
     crowding = find_crowding(filled(space).operations.averager, space == "axisymmetric")
     assert (crowding == 1.0).all()
 
 
 @pytest.mark.parametrize("height", [0.97, 0.5])
 @pytest.mark.parametrize("space", AXES)
-def test_particles_that_crowd_are_drawn_to_the_volume_there_is(space, height):
-    """All of them lower by a part, deep below the surface: by little, or by so much that a bound holds it."""
+def test_j_of_crowded_particles_tends_to_the_available_volume(space, height):
+    """All particles are moved down by a part: by a little, or by so much that the bound acts."""
     simulation = filled(space, volumetric={"name": "nodal-average", "relaxation": 1.0})
     o, p = simulation.operations, simulation.particles
     p.position[:, -1] *= height  # boxes and volumes as they were
@@ -110,8 +110,8 @@ def test_particles_that_crowd_are_drawn_to_the_volume_there_is(space, height):
     assert p.volume_ratio.max() <= 1.0
 
 
-def test_little_that_is_due_waits_until_it_is_worth_it():
-    """Four steps of a hundredth do nothing, the next does what all of them were due."""
+def test_small_relaxations_are_collected():
+    """Four steps of a hundredth change nothing; the next step applies all of them together."""
     simulation = filled("plane-strain", volumetric={"name": "nodal-average", "relaxation": 1.0})
     o, p = simulation.operations, simulation.particles
     o.mean_speed = DX

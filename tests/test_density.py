@@ -1,4 +1,4 @@
-"""Density of the interior over that of the material: what it is, what it is not, and what stops a run."""
+"""Density of the interior relative to that of the material: its definition, and when it stops a run."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ def test_a_domain_that_is_full_has_the_density_of_its_material(space, faces):
 
 @spaces
 def test_of_a_block_the_surface_is_left_out(space):
-    """What is within a cell of the surface lacks neighbours, and is as dense as the rest."""
+    """Nodes within a cell of the surface lack neighbours, although the material there has the right
+    density."""
     axes = AXES[space]
     lower = [0.0 if a == "r" else 2 * CELL for a in axes]
     one = found(scene(space, lower, [6 * CELL] * len(axes), {}))
@@ -78,8 +79,8 @@ def test_periodic_faces_are_no_surface():
 
 @spaces
 @pytest.mark.parametrize("factor", [0.9, 1.07])
-def test_volumes_that_places_have_no_room_for(space, factor):
-    """J drifts, places do not: each node holds that much more than it has room for."""
+def test_volumes_larger_than_the_space_of_the_particles(space, factor):
+    """J changes but positions do not, so that each node holds more material than its volume."""
     simulation = scene(space)
     simulation.particles.volume *= factor
     one = found(simulation)
@@ -87,7 +88,7 @@ def test_volumes_that_places_have_no_room_for(space, factor):
 
 
 def test_a_body_that_is_compressed_as_it_says_has_its_density():
-    """Pressure is no departure: places and volumes say the same, of a fluid under its weight or a solid."""
+    """Pressure is no error: positions and volumes agree, in a fluid under its weight and in a solid."""
     simulation = scene(material=RUBBER, lower=[0.1, 0.1], upper=[0.7, 0.7], faces={})
     p = simulation.particles
     middle = p.position.mean(axis=0)
@@ -97,7 +98,7 @@ def test_a_body_that_is_compressed_as_it_says_has_its_density():
     assert found(simulation).mean == pytest.approx(1.0, abs=0.01)
 
 
-def test_what_is_too_much_here_does_not_make_up_for_too_little_there():
+def test_too_high_and_too_low_densities_do_not_cancel():
     simulation = scene(faces="symmetry")  # at walls, too little would be material that leaves them
     p = simulation.particles
     left = p.position[:, 0] < CELLS * CELL / 2
@@ -166,7 +167,7 @@ def squeezed(by, **scheme):
         ({"redistribution": "even"}, "smaller cells or more particles_per_cell may keep them consistent"),
     ],
 )
-def test_a_tenth_stops_a_run_and_says_why(scheme, cure):
+def test_a_departure_of_a_tenth_stops_a_run_with_a_sentence(scheme, cure):
     simulation = squeezed(1.2, **scheme)
     p = simulation.particles
     worst = found(simulation)
@@ -182,14 +183,14 @@ def test_a_tenth_stops_a_run_and_says_why(scheme, cure):
     assert said.endswith(f"positions and volumes of the particles contradict each other; {cure}")
 
 
-def test_a_solid_is_not_told_to_be_redistributed():
+def test_the_sentence_for_a_solid_does_not_propose_a_redistribution():
     simulation = scene(material=RUBBER, redistribution="none")
     simulation.particles.volume *= 1.2
     with pytest.raises(GuardStop, match="smaller cells or more particles_per_cell"):
         simulation.check()
 
 
-def test_less_is_noted_and_let_go():
+def test_a_smaller_departure_gives_a_warning():
     simulation = squeezed(1.07, redistribution="none")
     simulation.check()
     watch = simulation.guards.density
@@ -198,8 +199,8 @@ def test_less_is_noted_and_let_go():
     assert watch.since == simulation.time
 
 
-def test_a_few_nodes_inside_do_not_speak_for_a_thin_body():
-    """In a block of 6 × 4 cells three nodes have neighbours that are full on all sides: an eighth of it."""
+def test_a_body_with_few_interior_nodes_is_not_judged():
+    """In a block of 6 × 4 cells only three nodes are in the interior: an eighth of its volume."""
     simulation = scene(lower=[0.1, 0.1], upper=[0.7, 0.5], faces={}, redistribution="none")
     simulation.particles.volume *= 1.3
     one = found(simulation)
@@ -235,8 +236,9 @@ TANK = {
 }
 
 
-def test_a_tank_whose_content_sinks_into_itself_is_warned_of_and_stopped(tmp_path, caplog):
-    """Without a redistribution; it would lose a quarter of its height, and end with status 0."""
+def test_a_tank_whose_content_loses_volume_is_warned_of_and_stopped(tmp_path, caplog):
+    """Without a redistribution. Before this guard, the run lost a quarter of its height and ended with status
+    0."""
     with caplog.at_level(logging.WARNING), pytest.raises(GuardStop) as stop:
         mpmkit.run(parse_case(TANK), tmp_path / "run")
     assert stop.value.guard == "density"
@@ -249,7 +251,7 @@ def test_a_tank_whose_content_sinks_into_itself_is_warned_of_and_stopped(tmp_pat
 
 @pytest.mark.slow
 def test_a_film_that_slows_down_is_stopped_before_it_has_lost_half_of_its_speed():
-    """Steady at 0.4204 m/s until 4.7 s, without a redistribution; 0.15 m/s at 12 s if it is let go on."""
+    """Without a redistribution: steady at 0.4204 m/s until 4.7 s; it would have 0.15 m/s at 12 s."""
     cell, height, exact = 0.005, 0.05, 0.4204
     film = {
         "space": "plane-strain",
@@ -288,7 +290,7 @@ def test_a_film_that_slows_down_is_stopped_before_it_has_lost_half_of_its_speed(
     assert speed() > 0.8 * exact
 
 
-def test_what_is_noted_is_said_again_at_the_end(caplog):
+def test_the_warning_is_repeated_at_the_end(caplog):
     case = parse_case(TANK | {"until": 0.02})
     simulation = Simulation(case)
     recorder = Recorder(simulation, {}, None)

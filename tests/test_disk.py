@@ -1,4 +1,4 @@
-"""Disks that are full or read-only, files that vanish: status 4, one sentence, nothing half-written left."""
+"""Full or read-only disks, and files that vanish: status 4, one sentence, and no half-written files."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def one_sentence(done: subprocess.CompletedProcess) -> str:
 
 
 def assert_readable(directory: Path):
-    """Every file that has its name is whole; nothing half-written is left with one."""
+    """Every file with a final name is complete."""
     if (directory / "history.nc").exists():
         with xarray.open_dataset(directory / "history.nc") as history:
             history.load()

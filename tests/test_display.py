@@ -1,4 +1,4 @@
-"""What a person sees of a run and of a study: compiling, a bar that fits, the pictures, how long it takes."""
+"""Display of a run and of a study: compiling, a progress bar that fits, pictures, and times."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""The docs are whole, and the checks of continuous integration see it when they are not."""
+"""The docs pass all checks of continuous integration, and each check finds its fault."""
 
 import importlib.util
 import json

@@ -1,4 +1,5 @@
-"""exp, expm1, log, powers and cube roots against NumPy in a longer format, in units of the last place."""
+"""exp, expm1, log, powers and cube roots against NumPy in a longer format; errors in units of the last
+place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the faces of the grid give to the material: all of its momentum, its weight, the push of a fluid."""
+"""Forces of the faces of the grid on the material: momentum balance, weight, pressure of a fluid."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def test_a_redistribution_moves_no_momentum_past_the_faces():
 @pytest.mark.parametrize("contact", ["slip", "stick", {"kind": "coulomb", "coefficient": 0.3}], ids=str)
 @pytest.mark.parametrize("face", ["slip", "stick", RELEASING], ids=str)
 def test_faces_and_walls_account_for_all_momentum(face, contact, moving):
-    """A wall that stands on the floor: what it gives to nodes that the floor holds, the floor takes back."""
+    """A wall that stands on the floor: the floor balances the impulse of the wall on nodes that it holds."""
     for (order, update), space in zip(SCHEMES[::4], AXES, strict=True):
         velocity = (
             [0.0, 0.1] if space == "axisymmetric" else [0.1 * round(n) for n in PLANES[space]["normal"]]

@@ -1,5 +1,4 @@
-"""Fits of a closed form in the place of runs: what is found, with what intervals, and what cannot be "
-"known."""
+"""Fits of a closed form instead of runs: values, intervals, and parameters that cannot be known."""
 
 import json
 import re
@@ -26,6 +25,12 @@ from mpmkit.errors import CaseError, GuardStop
 from mpmkit.fitting.model import Budget
 
 FINAL = {"variable": "final_spread", "value": final_spread(150), "uncertainty": 0.005}
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Fits without their figures, which take longer to draw than all else here."""
+    monkeypatch.setattr("mpmkit.fitting.figures.draw", lambda result, directory: [])
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +62,7 @@ def test_the_interval_of_one_number_is_that_of_its_uncertainty():
         assert final_spread(end) == pytest.approx(final_spread(150) + way * 1.645 * 0.005, abs=2e-5)
 
 
-def test_the_final_spread_alone_says_nothing_of_the_viscosity():
+def test_the_final_spread_alone_does_not_identify_the_viscosity():
     result = mpmkit.fit(a_fit([FINAL]), executor=Pretend())
     viscosity = result.parameters[VISCOSITY]
     assert not viscosity.identifiable
@@ -79,6 +84,7 @@ def test_both_come_from_the_final_spread_and_t500():
         assert found[path].low < truth < found[path].high
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_parameters_at_the_top_of_a_laboratory_case_are_found(tmp_path):
     measured = [FINAL, {"variable": "t500", "value": t500(150, 40), "relative_uncertainty": 0.03}]
     parameters = {f"parameters.{path.split('.')[-1]}": PARAMETERS[path] for path in PARAMETERS}
@@ -106,7 +112,7 @@ def test_a_prior_is_no_measurement():
     assert not found.identifiable
 
 
-def test_the_coarser_model_only_leads_the_way(tmp_path):
+def test_the_coarser_model_only_gives_the_start_and_the_model_error(tmp_path):
     stages = {"stages": [{}, {"grid.cell_size": 0.01}], "model_error": None}
     fit = a_fit([curve(tmp_path / "d.csv", 150, 40, noise=0.01)], changes=stages)
     result = mpmkit.fit(fit, executor=Pretend(offset=0.02))
@@ -121,6 +127,7 @@ def test_the_coarser_model_only_leads_the_way(tmp_path):
     assert width[0] > 2 * width[1]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_runs_are_kept_and_reused(of_a_curve, tmp_path):
     fit, out, _, ran = of_a_curve
     assert len(ran) > 5
@@ -131,6 +138,7 @@ def test_runs_are_kept_and_reused(of_a_curve, tmp_path):
     assert (tmp_path / "out/fit.json").read_bytes() == before
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(of_a_curve, tmp_path):
     fit, _, straight, ran = of_a_curve
     first, rest = Pretend(), Pretend()
@@ -143,7 +151,7 @@ def test_a_fit_that_was_cut_off_goes_on_to_the_same_result(of_a_curve, tmp_path)
     assert all(data in ran for data in rest.ran)
 
 
-def test_what_a_fit_leaves_behind(of_a_curve):
+def test_the_directory_of_a_fit(of_a_curve):
     _, out, _, ran = of_a_curve
     made = {"asked.json", "fit.json", "runs.nc", "fit.html", "members"}
     pictures = {"fitted.png", "misfit.png", "flow_curve.png"}
@@ -177,6 +185,7 @@ def test_the_flow_curve_has_the_band_of_its_parameters(of_a_curve):
     assert np.all(found.stress < found.high)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_another_fit_does_not_take_the_place_of_a_result(tmp_path):
     mpmkit.fit(a_fit([FINAL], {YIELD_STRESS: PARAMETERS[YIELD_STRESS]}), tmp_path, executor=Pretend())
     with pytest.raises(CaseError, match="holds the result of another fit"):
@@ -193,7 +202,7 @@ HERSCHEL_BULKLEY = {
 }
 
 
-def test_of_two_laws_that_say_the_same_the_simpler_one_is_taken(tmp_path):
+def test_of_two_equal_laws_the_simpler_one_is_better(tmp_path):
     measured = [curve(tmp_path / "d.csv", 150, 40, noise=0.01)]
     fit = a_fit(measured, laws={"Herschel-Bulkley": HERSCHEL_BULKLEY})
     result = mpmkit.fit(fit, executor=Pretend())
@@ -229,7 +238,7 @@ def test_a_narrow_domain_does_not_change_the_interval():
     assert (narrow.low, narrow.high) == pytest.approx((wide.low, wide.high), rel=0.02)
 
 
-def test_a_first_run_that_a_guard_stops_is_told(tmp_path):
+def test_a_stop_of_the_first_run_is_reported(tmp_path):
     fit = a_fit([curve(tmp_path / "d.csv", 150, 40)])
     with pytest.raises(GuardStop, match=r"with bodies.0.material.yield_stress = .* it gained energy"):
         mpmkit.fit(fit, executor=Pretend(stopped=lambda material: True))
@@ -250,7 +259,7 @@ def test_a_budget_that_does_not_even_begin_is_refused():
         mpmkit.fit(a_fit([FINAL], budget={"runs": 1}), executor=Pretend())
 
 
-def test_scipy_is_asked_for_in_one_sentence(monkeypatch):
+def test_missing_scipy_has_one_sentence(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "scipy", None)
     monkeypatch.setitem(__import__("sys").modules, "scipy.optimize", None)
     with pytest.raises(CaseError, match="needs scipy: pip install scipy"):

@@ -221,7 +221,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_is_wrong_is_told_in_one_sentence(name, tmp_path, monkeypatch, capsys):
+def test_a_wrong_file_has_one_sentence(name, tmp_path, monkeypatch, capsys):
     change, sentence = BAD[name]
     assert sentence in refused(tmp_path, monkeypatch, capsys, change)
 

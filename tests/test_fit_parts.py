@@ -1,4 +1,4 @@
-"""The parts of a fit, each against numbers that are known."""
+"""The parts of a fit, each against known numbers."""
 
 import numpy as np
 import pytest

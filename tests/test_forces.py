@@ -1,4 +1,4 @@
-"""Body forces: what the material gets from them is exact, and so is what the ledger says of it."""
+"""Body forces: their impulse on the material and their entries in the ledger are exact."""
 
 from __future__ import annotations
 
@@ -169,8 +169,8 @@ def test_fluid_in_a_centrifuge_is_pressed_outwards():
 
 
 @pytest.mark.parametrize("velocity", ["apic", "flip", "pic"])
-def test_the_work_of_each_force_is_what_it_gives(velocity):
-    """A block that floats has no more and no less energy and momentum than the two forces gave it."""
+def test_the_work_of_each_force_is_exact(velocity):
+    """A floating block has exactly the energy and momentum that the two forces gave it."""
     simulation = advanced({"tilt": TILT, "v": VIBRATES}, scheme={"velocity": velocity})
     account = simulation.account()
     work = simulation.force_work
@@ -274,7 +274,7 @@ def test_a_stop_in_no_time_is_noticed():
     assert not any("forces.s" in text for text in implausible(a_case({"v": VIBRATES})))
 
 
-def test_it_goes_on_with_the_same_bits(tmp_path):
+def test_a_resumed_run_has_the_same_bits(tmp_path):
     frame = {"kind": "rotating-frame", "point": [0, 0], "times": [0.0, 0.1], "rates": [0, 3]}
     data = copy.deepcopy(BLOCK) | {"forces": {"tilt": TILT, "turn": frame}, "gravity": None}
     rows = {"report": False, "history_interval": 0.002, "frame_interval": 0.1}
@@ -293,7 +293,7 @@ def test_it_goes_on_with_the_same_bits(tmp_path):
 
 
 class Clock(GeneralisedNewtonianLaw):
-    """A law that writes down when it is asked."""
+    """A law that records the times of its calls."""
 
     name, citation, api_version = "clock", "none", 2
     seen: ClassVar[list[float]] = []
@@ -371,13 +371,13 @@ TURN = {"kind": "rotating-frame", "point": [0, 0], "rate": 3.0}
         ({"kind": "centrifugal", "rate": 1, "point": [0.1, 0]}, RADIAL, "it must be [0, z], on the axis"),
     ],
 )
-def test_what_is_wrong_is_said(force, changes, sentence):
+def test_a_wrong_force_has_its_sentence(force, changes, sentence):
     with pytest.raises(CaseError) as error:
         a_case({"f": force}, **changes)
     assert sentence in str(error.value)
 
 
-def test_a_force_at_fault_is_told():
+def test_a_faulty_force_is_named():
     class Breaks(BodyForce):
         name, citation, api_version = "breaks", "none", 2
 

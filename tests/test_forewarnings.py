@@ -1,4 +1,4 @@
-"""What is said of a scene before it is run: missing floors, walls that pull, bodies that touch, units."""
+"""Warnings before a run: missing floors, walls that pull, bodies that touch, unusual units."""
 
 import json
 import time
@@ -46,7 +46,7 @@ BLOCK = box([0.5, 0.5], [1.0, 1.0])
 # --- A floor that is missing
 
 
-def test_a_forgotten_floor_is_said_before_the_run_by_its_name():
+def test_a_forgotten_floor_is_named_before_the_run():
     """Half a metre above the face, a body is there after √(2 · 0.5/g) = 0.32 s."""
     (sentence,) = forewarnings(scene(BLOCK))
     assert "bodies.0 has no floor" in sentence
@@ -102,24 +102,24 @@ def test_plan_and_run_say_it_before_the_fall(tmp_path, capsys, monkeypatch):
 # --- Walls that pull
 
 
-def test_a_body_that_hangs_from_a_plane_of_symmetry_is_said():
+def test_a_body_that_hangs_from_a_plane_of_symmetry_gives_a_warning():
     """No wall does that to it: a wall that slips lets go, and one that sticks is asked to."""
     over, faces = box([0.5, 0], [1, 0.5]), {"z_max": "stick"}
     hanging = scene(over, faces=faces | {"z_min": "symmetry"}, gravity=(0, 9.81))
     assert "bodies.0 hangs from the face z_min: gravity pulls it away from there" in said(hanging)
-    assert '"symmetry" face does not let go of what is at it; "slip" does' in said(hanging)
+    assert '"symmetry" face does not release material that touches it; "slip" does' in said(hanging)
     for wall in ("slip", "stick", {"kind": "friction", "coefficient": 1}):
         assert said(scene(over, faces=faces | {"z_min": wall}, gravity=(0, 9.81))) == ""
 
 
-def test_what_swings_off_a_slip_wall_is_told_what_to_write():
+def test_a_body_that_oscillates_off_a_slip_wall_gets_a_cure():
     """A bar that was held at a slip wall by versions before 0.8, which pulled."""
     swings = {"velocity": {"amplitude": [0.1, 0], "wave_vector": [3.14, 0]}}
     rubber = {"law": "neo-hookean", "density": 1000, "youngs_modulus": 1e5, "poisson_ratio": 0}
     bar = box([0, 0], [1, 0.5]) | swings
     faces = {"x_min": "slip", "z_min": "slip"}
     solid = scene(bar | {"material": rubber}, faces=faces)
-    assert "bodies.0 is not held by the face x_min: it swings" in said(solid)
+    assert "bodies.0 is not held by the face x_min: it oscillates" in said(solid)
     assert 'write "x_min": "symmetry" in grid.faces' in said(solid)
     assert said(solid).count("is not held") == 1  # not of z_min, along which nothing moves
     assert "is not held" in said(scene(bar, faces=faces, gravity=(0, 0)))
@@ -127,7 +127,7 @@ def test_what_swings_off_a_slip_wall_is_told_what_to_write():
     assert said(scene(bar | {"material": rubber}, faces={"x_min": "symmetry", "z_min": "slip"})) == ""
 
 
-def test_a_body_that_leaves_a_wall_is_said():
+def test_a_body_that_leaves_a_wall_gives_a_warning():
     leaving = box([0, 0], [0.5, 0.5]) | {"velocity": [1.0, 0]}
     assert "its velocity takes it away" in said(scene(leaving, faces={"x_min": "symmetry", "z_min": "slip"}))
 
@@ -162,7 +162,7 @@ def test_a_velocity_that_is_an_initial_field_is_known_as_the_key_is():
     assert said(scene(*apart, faces=FLOOR, gravity=gravity)) == ""
 
 
-def test_a_wall_with_sides_that_overlap_is_said():
+def test_a_thin_wall_gives_a_warning():
     """Weights reach one and a half cells into a wall: with two sides, it needs three cells."""
     thickness = "walls.mould.surface.thickness"
     thin, enough, solid = (parse_case(changed(thickness, value)) for value in (0.058, 0.06, ABSENT))
@@ -219,7 +219,7 @@ TWO = {
 
 
 @pytest.mark.parametrize(("first", "second", "gravity"), TWO.values(), ids=TWO)
-def test_bodies_that_touch_or_come_to_are_said(first, second, gravity):
+def test_bodies_that_touch_or_will_touch_give_a_warning(first, second, gravity):
     for bodies in ((first, second), (second, first)):
         (sentence,) = forewarnings(scene(*bodies, faces=FLOOR, gravity=gravity))
         assert "bodies.0 and bodies.1 touch, or will touch" in sentence
@@ -237,7 +237,7 @@ def test_pieces_of_one_body_and_bodies_that_never_meet_are_not():
     assert said(scene(*parting, gravity=(0, 0))) == ""
 
 
-def test_of_very_many_bodies_a_few_are_said_at_once():
+def test_of_very_many_bodies_a_few_are_named_quickly():
     drops = [
         box([0.02 * k, 0.1], [0.02 * k + 0.01, 0.11], RUBBER if k % 2 else MUD, velocity=[0.1 * (k % 3), 0])
         for k in range(100)
@@ -274,12 +274,12 @@ UNITS = {
 
 
 @pytest.mark.parametrize(("changes", "expected"), UNITS.values(), ids=UNITS)
-def test_a_value_that_cannot_be_meant_is_said_with_what_is_usual(changes, expected):
+def test_an_unusual_value_is_named_with_the_usual_range(changes, expected):
     assert expected in " | ".join(implausible(load_case(CASES / "slump.json", changes)))
 
 
 @pytest.mark.parametrize("size", [1e-290, 1e-30, 1e30, 1e290])
-def test_numbers_beyond_any_scale_are_said_and_do_no_harm(size):
+def test_extreme_numbers_give_a_warning_and_no_error(size):
     changes = [
         f'grid={{"cell_size": {size / 10}, "domain": {{"r": [0, {size}], "z": [0, {size}]}}}}',
         f'bodies.0.shape={{"kind": "cylinder", "radius": {size / 2}, "height": {size / 2}}}',

@@ -1,6 +1,6 @@
-"""Shape functions of four nodes an axis, the most there may be, at every face of the domain.
+"""Shape functions with four nodes per axis, the largest number, at every face of the domain.
 
-In three dimensions their kernels take longer to compile than all of these tests to run: for the slow run.
+In three dimensions their kernels take long to compile, so these tests are slow tests.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def test_every_node_that_a_particle_on_a_face_touches_is_stored(space, face, kin
     ("space", "axis"), [of_space(s, a) for s, axes in SPACES.items() for a in axes if a != "r"]
 )
 def test_upper_and_lower_faces_are_mirror_images(space, axis, kind):
-    """A block that is thrown at the one and one that is thrown at the other."""
+    """One block is thrown at the lower face and one at the upper face."""
     velocities = []
     for face in (f"{axis}_min", f"{axis}_max"):
         simulation, number = cube_at(face, kind, space)

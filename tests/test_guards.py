@@ -1,4 +1,4 @@
-"""Every guard of a run, provoked: it says when, which particle, why that may be, and what to try."""
+"""Every guard of a run, provoked: its sentence names the step, the particle, a likely cause and a cure."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Swelling(ConstitutiveLaw):
 
 
 class Declared(Swelling):
-    """The same, and says so."""
+    """The same law, which declares that it adds energy."""
 
     name = "declared"
     passive = False
@@ -62,7 +62,7 @@ def scene(material=FLUID, gravity=(0.0, 0.0), velocity=(0.0, 0.0), faces=None, *
 
 
 def stopped(simulation, guard, steps=3 * CONTROL_INTERVAL):
-    """The sentence with which it stops, and the particle's place in the arrays."""
+    """The sentence of the stop, and the index of the particle."""
 
     def run():
         with np.errstate(all="ignore"), blaming_plugins(plugins_of(simulation.case)):
@@ -99,7 +99,7 @@ def test_particle_outside():
 
 
 @pytest.mark.parametrize("face", ["slip", "stick", {"kind": "friction", "coefficient": 0.4}])
-def test_a_particle_thrown_through_a_closed_face_is_not_told_to_close_it(face):
+def test_the_sentence_for_a_closed_face_does_not_propose_to_close_it(face):
     simulation = scene(faces={"x_max": face})
     simulation.advance()
     simulation.particles.position[3, 0] = 2.3
@@ -109,8 +109,8 @@ def test_a_particle_thrown_through_a_closed_face_is_not_told_to_close_it(face):
     assert "close that face" not in said
 
 
-def test_material_that_is_torn_is_not_told_that_its_step_is_too_long():
-    """No shorter step joins what is drawn out longer than a cell."""
+def test_the_sentence_for_torn_material_does_not_blame_the_step():
+    """A shorter step cannot repair material with boxes longer than a cell."""
     simulation = scene()
     simulation.advance()
     p = simulation.particles
@@ -133,8 +133,8 @@ def test_volume_ratio_out_of_range(ratio):
     assert "reduce scheme.time_step.fraction" in said
 
 
-def test_energy_from_nowhere():
-    """A block at rest without gravity has nothing to move with; this one flies apart all the same."""
+def test_created_energy():
+    """A block at rest without gravity has no energy to move, but this one flies apart."""
     material = {"law": "swelling", "density": 1000.0, "pressure": 1e2}
     said, where = stopped(scene(material), "energy")
     assert where >= 0
@@ -179,7 +179,7 @@ def test_an_oscillation_of_the_energy_is_no_energy_created():
     assert simulation.guards.balance.excess < 0
 
 
-def test_a_law_that_does_work_and_says_so_is_let_go():
+def test_a_law_that_declares_its_work_is_not_stopped():
     simulation = scene({"law": "declared", "density": 1000.0, "pressure": 1e2})
     for _ in range(3 * CONTROL_INTERVAL):
         simulation.advance()
@@ -188,7 +188,7 @@ def test_a_law_that_does_work_and_says_so_is_let_go():
 
 
 def test_energy_of_a_step_beyond_the_limit():
-    """At 0.9 of dx/c, where the scheme bears no more than 0.7, noise grows, all numbers finite and wrong."""
+    """At 0.9 of dx/c, beyond the stable 0.7, noise grows: all numbers are finite, and wrong."""
     simulation = scene(velocity=(0.1, 0.0), order="musl", volumetric="own")
     simulation.particles.velocity[::3] *= -1
     simulation.fraction = 0.9
@@ -200,7 +200,7 @@ def test_energy_of_a_step_beyond_the_limit():
 
 @pytest.mark.parametrize("gravity", [(0.0, -9.81), (3.0, -4.0)])
 @pytest.mark.parametrize("faces", [{}, {"x_min": "periodic", "x_max": "periodic"}], ids=["open", "periodic"])
-def test_work_of_gravity_is_no_energy_from_nowhere(gravity, faces):
+def test_work_of_gravity_is_not_created_energy(gravity, faces):
     """Falling freely, along a periodic axis as well: what is created is no more than that of one step."""
     simulation = scene(gravity=gravity, faces=faces)
     while simulation.time < 0.2:
@@ -234,7 +234,7 @@ def test_step_collapse():
     assert "the advective limit sets it" in str(stop.value)
 
 
-def test_a_step_that_time_does_not_feel():
+def test_a_step_too_short_to_change_the_time():
     simulation = scene()
     simulation.time = 1e17
     with pytest.raises(GuardStop, match="the step has fallen to") as stop:
@@ -280,7 +280,7 @@ def test_a_limit_that_is_ignored_is_the_likely_cause():
     assert "remove that limit from it" in said
 
 
-def test_what_the_schemes_know_to_fail_is_the_likely_cause():
+def test_a_known_failure_of_the_schemes_is_the_likely_cause():
     simulation = scene(shape="linear")
     simulation.advance()
     simulation.particles.velocity[0] = np.nan

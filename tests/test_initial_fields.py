@@ -1,4 +1,4 @@
-"""Fields of bodies at the start: velocity, stress, and what laws remember."""
+"""Fields of bodies at the start: velocity, stress, and state variables of laws."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ def test_plan_offers_no_quarter_of_a_body_with_fields():
         ({"stress": {"kind": "hydrostatic", "load": 1e9}}, OIL, "would press the fluid to less than half"),
     ],
 )
-def test_what_is_wrong_is_said(initial, material, sentence):
+def test_a_wrong_field_has_its_sentence(initial, material, sentence):
     with pytest.raises(CaseError) as error:
         Simulation(a_case(initial, material))
     assert sentence in str(error.value)

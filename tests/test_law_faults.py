@@ -1,4 +1,4 @@
-"""What a law gives back, or writes where it must not: it is named, before anything else comes to harm."""
+"""A law that returns a wrong value, or writes where it must not, is named before other data are damaged."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def test_a_largest_viscosity_that_is_no_number():
     ],
     ids=lambda value: str(value)[:20],
 )
-def test_what_a_law_says_of_itself_cannot_be_used(attribute, value, reason):
+def test_unusable_remarks_of_a_law(attribute, value, reason):
     plugin = type("Bad", (Law,), {attribute: lambda self, *given: value, "__module__": __name__})
     assert reason in blamed("law", plugin)
 
@@ -193,7 +193,7 @@ def test_a_viscosity_that_is_of_no_real_numbers(dtype):
     "raised", [KeyError("a"), TypeError("b"), ValueError("c"), SystemExit(0), CaseError("d")], ids=repr
 )
 @pytest.mark.parametrize("method", ["wave_speed", "largest_viscosity", "update_stress", "remarks"])
-def test_whatever_a_law_raises_is_its_own_fault(method, raised):
+def test_any_exception_in_a_law_is_blamed_on_the_law(method, raised):
     def fail(self, *given):
         raise raised
 
@@ -201,7 +201,7 @@ def test_whatever_a_law_raises_is_its_own_fault(method, raised):
     assert f" raised {type(raised).__name__}: {raised} (test_law_faults.py, line " in said
 
 
-def test_an_interrupt_is_nobodys_fault():
+def test_an_interrupt_is_blamed_on_no_plugin():
     class Slow(Law):
         def update_stress(self, motion, state, dt, stress):
             raise KeyboardInterrupt

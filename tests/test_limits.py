@@ -1,4 +1,4 @@
-"""The limits of the time step: of a solid as it is strained, and of a viscosity in whatever time."""
+"""Limits of the time step: of a strained solid, and of a viscosity in slow flow."""
 
 import numpy as np
 import pytest
@@ -87,7 +87,7 @@ def rebound(simulation):
 
 @pytest.mark.parametrize(("order", "fraction"), [("usf", 0.5), ("usf", 1.0), ("musl", 1.0)])
 def test_a_hard_impact_that_gains_energy_is_stopped(order, fraction):
-    """Fault 42: 1.20 times the energy at the end (usf), 1.34 (musl), and no word."""
+    """A former fault (42): 1.20 times the energy at the end (usf), 1.34 (musl), without a message."""
     simulation = impact(order=order, velocity="flip", time_step={"fraction": fraction})
     with pytest.raises(
         GuardStop, match=r"J of energy were created.*reduce scheme\.time_step\.fraction"
@@ -109,8 +109,9 @@ def test_a_hard_impact_in_steps_that_fit_goes_on(scheme):
     assert rebound(impact(**scheme)) <= 1.02
 
 
-def test_energy_from_nowhere_in_slow_motion_is_a_warning_and_no_stop(caplog):
-    """USF with FLIP makes some per cent at a tenth of the wave speed. Such a run is warned of, not ended."""
+def test_energy_created_in_slow_motion_is_a_warning_and_no_stop(caplog):
+    """USF with FLIP creates a few per cent at a tenth of the wave speed. Such a run gets a warning and is not
+    stopped."""
     mpmkit.run(thrown(speed=1.2, order="usf", velocity="flip"))
     assert "% of energy was created" in caplog.text
 
@@ -152,8 +153,8 @@ def thickening(slower):
 
 
 def test_a_flow_in_slow_time_takes_as_many_steps():
-    """Fault 77: a rate of 1 /s was allowed for in every scene, so that a fluid that thickens, and whose flow
-    takes months, had its viscosity of a second. Another unit of time makes no difference to the steps."""
+    """The number of steps does not depend on the unit of time. A former fault (77): every scene assumed a
+    rate of 1 /s, so a shear-thickening fluid that flows for months got the viscosity of that rate."""
     steps = []
     for slower in (1.0, 1e3, 1e6):
         case = thickening(slower)

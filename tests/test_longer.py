@@ -1,4 +1,4 @@
-"""A run that has finished goes on to a later time, as if it had been asked for that from the start."""
+"""A finished run continues to a later time, with the same result as a long run from the start."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Diagnostics and particle fields: what they measure, where it is written, and whose fault it is."""
+"""Diagnostics and particle fields: their values, where these are written, and faulty plug-ins."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_history_frames_and_conditions_have_them(tmp_path):
         ({"particle_history": ["thick"]}, 'output.particle_history.0 is "thick"'),
     ],
 )
-def test_what_is_wrong_is_said(output, sentence):
+def test_a_wrong_diagnostic_has_its_sentence(output, sentence):
     with pytest.raises(CaseError) as error:
         tank(**output)
     assert sentence in str(error.value)
@@ -187,7 +187,7 @@ X = [Column("x", "m", "a length")]
         (lambda: X, lambda s: s.state("age"), "asked for the state 'age', which no law has; there are: none"),
     ],
 )
-def test_a_fault_of_a_diagnostic_is_told_as_its_own(monkeypatch, columns, measure, sentence):
+def test_a_faulty_diagnostic_is_named(monkeypatch, columns, measure, sentence):
     monkeypatch.setattr(Broken, "of_columns", staticmethod(columns))
     monkeypatch.setattr(Broken, "of_measure", staticmethod(measure))
     with pytest.raises(GuardStop) as stop:
@@ -196,7 +196,7 @@ def test_a_fault_of_a_diagnostic_is_told_as_its_own(monkeypatch, columns, measur
     assert sentence in str(stop.value)
 
 
-def test_a_fault_of_a_particle_field_is_told_as_its_own():
+def test_a_faulty_particle_field_is_named():
     case = tank(registry(), fields={"r": "rooted"}, particle_history=["r"])
     with pytest.raises(
         GuardStop, match=r"'rooted' \(particle field\) returned an array of .* from values; it must"

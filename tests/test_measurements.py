@@ -1,4 +1,4 @@
-"""What a case measures: in the history, in the summary, and the sentences for what cannot be measured."""
+"""Measurements of a case: in the history, in the summary, and the sentences about wrong ones."""
 
 import json
 
@@ -193,7 +193,7 @@ def test_the_last_value_is_in_the_summary_with_its_unit(tmp_path):
         ("tip", "front(", "this is not a formula"),
     ],
 )
-def test_a_sentence_says_what_cannot_be_measured(name, formula, words):
+def test_a_wrong_measurement_has_its_sentence(name, formula, words):
     with pytest.raises(CaseError) as refused:
         mpmkit.parse_case(case(**{name: (formula, "m")}))
     assert words in str(refused.value)

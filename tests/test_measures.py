@@ -1,4 +1,4 @@
-"""Measures of a scene: of the material in the domain, and with a potential where there is one."""
+"""Measures of a scene: lengths of the material in the domain, and energies."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Particles that are merged: what is kept, and what they become."""
+"""Merged particles: their values, and which sums are conserved."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def some_pairs(p, count=20):
 
 
 @spaces
-def test_merging_keeps_what_there_is(space):
+def test_merging_conserves_mass_volume_and_momentum(space):
     p = aged(space).particles
     along = slice(space == "axisymmetric", None)
 
@@ -179,7 +179,7 @@ def test_merging_undoes_a_split():
 
 
 def test_no_number_is_given_twice():
-    """Neither that of a particle that is there, nor that of one that was merged away."""
+    """New particles get a number that no present or removed particle has had."""
     simulation = scene()
     p, gone, last = simulation.particles, set(), 63
     for seed in range(6):

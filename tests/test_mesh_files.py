@@ -1,4 +1,4 @@
-"""Files of surface meshes: as programs write them, and damaged."""
+"""Files of surface meshes, valid and damaged."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("name", DAMAGED)
-def test_a_damaged_file_is_told_what_is_wrong_with_it(tmp_path, name):
+def test_a_damaged_file_has_its_sentence(tmp_path, name):
     pytest.importorskip("igl")
     content, words = DAMAGED[name]
     with pytest.raises(CaseError) as refused:
@@ -125,7 +125,8 @@ def test_a_damaged_file_is_told_what_is_wrong_with_it(tmp_path, name):
 
 @pytest.mark.parametrize("kind", ["stl", "ply", "obj", "off", "vtk", "msh"])
 def test_a_file_cut_anywhere_gets_a_sentence(tmp_path, kind):
-    """Or is read where nothing is missing but its last letters; never a traceback."""
+    """A file cut at any place gets a sentence, or is read if only its last letters are missing; never a
+    traceback."""
     meshio = pytest.importorskip("meshio")
     pytest.importorskip("igl")
     whole = tmp_path / f"cube.{kind}"

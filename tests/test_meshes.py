@@ -1,4 +1,4 @@
-"""Bodies that are given as a closed surface mesh: they hold what the surface encloses."""
+"""Bodies from closed surface meshes: they fill the volume inside the surface."""
 
 from __future__ import annotations
 
@@ -13,16 +13,24 @@ from solids import BALL, BLOCK, BLOCK_QUADS, CUBE, CUBE_FACES, SOLID, fill, icos
 from mpmkit.errors import CaseError
 
 
-@pytest.mark.parametrize("name", ["ball.stl", "ball.obj", "ball.ply"])
-def test_a_mesh_is_filled_as_the_sphere_that_it_resembles(tmp_path, name):
+def ball(place):
     vertices, faces = icosphere(100.0)
-    mesh = Mesh(file=write(tmp_path / name, vertices, faces), scale=0.001, translate=[0, 0, 0.1])
-    assert mesh.problem(SOLID) is None
-    assert mesh.volume(SOLID) == pytest.approx(BALL.volume(SOLID), rel=5e-3)
-    np.testing.assert_allclose(mesh.bounds(SOLID), BALL.bounds(SOLID), atol=1e-6)
+    return Mesh(file=write(place, vertices, faces), scale=0.001, translate=[0, 0, 0.1])
+
+
+def test_a_mesh_is_filled_as_the_sphere_that_it_resembles(tmp_path):
+    mesh = ball(tmp_path / "ball.stl")
     particles, reference = fill(mesh, SOLID), fill(BALL, SOLID)
     assert len(particles.volume) == pytest.approx(len(reference.volume), rel=0.01)
     assert particles.volume.sum() == pytest.approx(mesh.volume(SOLID), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["ball.stl", "ball.obj", "ball.ply"])
+def test_a_mesh_is_the_sphere_that_it_resembles_in_every_format(tmp_path, name):
+    mesh = ball(tmp_path / name)
+    assert mesh.problem(SOLID) is None
+    assert mesh.volume(SOLID) == pytest.approx(BALL.volume(SOLID), rel=5e-3)
+    np.testing.assert_allclose(mesh.bounds(SOLID), BALL.bounds(SOLID), atol=1e-6)
     # Lattice points in the planes of symmetry, where the icosphere has corners and edges.
     points = np.random.default_rng(2).integers(-12, 13, (2000, 3)) * 0.01 + [0, 0, 0.1]
     distance = np.linalg.norm(points - [0, 0, 0.1], axis=1)

@@ -1,4 +1,4 @@
-"""Messages for cases written with other words of the field, or in something that is nearly JSON."""
+"""Messages about cases with synonyms of the right words, or with text that is not quite JSON."""
 
 import copy
 import json

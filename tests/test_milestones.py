@@ -1,4 +1,4 @@
-"""T500 and rest: found in the steps, whatever is recorded; and what a run says at its end."""
+"""T500 and rest: found from the steps, independently of the history; and the messages at the end of a run."""
 
 import json
 import re
@@ -90,20 +90,20 @@ class TestT500:
         go(130)
         assert milestones.t500() == pytest.approx(1.0, abs=1e-12)
 
-    def test_a_jump_between_two_looks_is_not_missed(self):
+    def test_a_jump_between_two_checks_is_not_missed(self):
         _, milestones, go = scripted(lambda t: 0.3 if t < 0.55 else 0.7)
         go(2 * LOOKS * 3)
         assert 0.4 < milestones.t500() <= 0.6
 
     @pytest.mark.parametrize("spread", [lambda t: 0.6 + t, lambda t: 0.4, lambda t: np.nan])
-    def test_what_never_rises_to_it_has_none(self, spread):
+    def test_without_a_crossing_there_is_no_t500(self, spread):
         _, milestones, go = scripted(spread)
         go(100)
         milestones.finish()
         assert milestones.t500() is None
 
-    def test_what_the_guards_have_not_seen_is_not_trusted(self):
-        """They look every 20 steps; the crossing is in step 51, and the stop in 55 or in 65."""
+    def test_a_crossing_after_the_last_check_of_the_guards_does_not_count(self):
+        """The guards check every 20 steps; the crossing is in step 51, and the stop in step 55 or 65."""
         scene, milestones, go = scripted(lambda t: 0.4 if t < 0.505 else 9.0)
         go(40)
         milestones._seen.close = 1.0
@@ -144,7 +144,7 @@ class TestRest:
         slow = np.log(1 / (0.01 * largest)) / 2.5
         assert milestones.at_rest_since == pytest.approx(slow, abs=0.025)
 
-    def test_what_creeps_is_not_at_rest(self):
+    def test_creeping_material_is_not_at_rest(self):
         _, milestones, go = scripted(lambda t: 0.3 + 0.004 * t, lambda t: 1.0 if t < 0.5 else 1e-3, step=1e-3)
         go(5000)
         assert milestones.at_rest_since is None
@@ -164,8 +164,8 @@ class TestRest:
         slow = np.log(2.5e-3 * (1 - np.exp(-0.2)) / 2e-4) / 2
         assert milestones.at_rest_since == pytest.approx(slow, abs=0.06)
 
-    def test_an_elastic_wobble_is_rest(self):
-        """0.1 mm of the spread to and fro, at 8 mm/s, of what moved at 1 m/s."""
+    def test_an_elastic_oscillation_counts_as_rest(self):
+        """The spread oscillates by 0.1 mm at 8 mm/s, after motion at 1 m/s."""
         _, milestones, go = scripted(
             lambda t: 0.3 + 1e-4 * np.sin(80 * t), lambda t: 1.0 if t < 0.5 else 4e-3, step=1e-3
         )
@@ -194,7 +194,7 @@ class TestRest:
         assert spread[still][0] > 0.5
         assert abs(history.attrs["final_spread_rate"]) < 1e-2
 
-    def test_what_still_flows_is_said_to(self, every_step, tmp_path, capsys):
+    def test_the_end_says_if_the_material_still_flows(self, every_step, tmp_path, capsys):
         (tmp_path / "cake.json").write_text(json.dumps(CAKE))
         arguments = ["--until", "0.1", "--out", tmp_path / "run"]
         assert status("run", tmp_path / "cake.json", *arguments) == 0
@@ -244,7 +244,8 @@ class TestWhatIsSaid:
             ({"z_min": {"kind": "friction", "coefficient": 0.4}}, "friction, with the coefficient 0.4"),
             (
                 {"z_min": {"kind": "stick", "releases": True}},
-                "stick, so that the material does not slide on it, and lets go where it would have to pull",
+                "stick, so that the material does not slide on it, and releases it where it would have to "
+                "pull",
             ),
             ({}, None),
         ],

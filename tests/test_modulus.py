@@ -1,4 +1,4 @@
-"""The elastic modulus that a case leaves open: what it knows of yield stress, viscosity and scene."""
+"""The default elastic modulus: it depends on yield stress, viscosity and scene."""
 
 import math
 
@@ -20,7 +20,7 @@ CONSTANT = 'bodies.0.material.sound_speed={"factor": 10}'
 
 
 class Curve(ElastoviscoplasticLaw):
-    """A stranger's law of the short contract: a flow curve, and nothing else."""
+    """A third-party law with a flow curve only."""
 
     name = "curve"
     api_version = 1

@@ -1,4 +1,4 @@
-"""Motions of walls: where they are, how fast, and when they are there."""
+"""Motions of walls: position, velocity, and the times at which they are present."""
 
 import math
 

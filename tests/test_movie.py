@@ -1,4 +1,4 @@
-"""``mpmkit movie``: pictures of fabricated runs, the shaded projection, the files, and what is refused."""
+"""``mpmkit movie``: pictures of fabricated runs, the shaded projection, the files, and bad input."""
 
 import shutil
 

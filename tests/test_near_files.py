@@ -1,4 +1,4 @@
-"""A file name with a slip of the hand is answered with the file that is meant."""
+"""The message about a misspelt file name proposes the nearest file."""
 
 import pytest
 
@@ -39,7 +39,7 @@ def test_the_nearest_file_is_named(folder, typed, meant):
 
 
 @pytest.mark.parametrize("typed", ["channel", "cases/x.json", "own", "", "a\0b"])
-def test_nothing_is_guessed_of_a_name_that_is_like_none(folder, typed):
+def test_a_name_unlike_any_other_gets_no_proposal(folder, typed):
     assert near_file(typed) is None
 
 
@@ -74,14 +74,14 @@ def runs(folder):
     ],
 )
 @pytest.mark.parametrize("command", ["report", "movie", "rerun"])
-def test_a_run_directory_with_a_slip_is_answered_with_the_nearest_run(runs, capsys, command, typed, meant):
+def test_a_misspelt_run_directory_gets_the_nearest_run(runs, capsys, command, typed, meant):
     with pytest.raises(SystemExit) as ended:
         main([command, typed])
     assert ended.value.code == 2
     assert f"there is no such directory; did you mean '{meant}'?" in capsys.readouterr().err
 
 
-def test_a_directory_that_is_like_none_is_not_guessed(runs, capsys):
+def test_a_directory_unlike_any_other_gets_no_proposal(runs, capsys):
     with pytest.raises(SystemExit):
         main(["report", "channel"])
     assert capsys.readouterr().err.endswith("results of a run: there is no such directory\n")

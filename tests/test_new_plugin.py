@@ -1,4 +1,4 @@
-"""``mpmkit new-plugin``: what it writes passes its own tests as it is; a refusal leaves nothing behind."""
+"""``mpmkit new-plugin``: the written distribution passes its tests; after a refusal there are no files."""
 
 import json
 import os

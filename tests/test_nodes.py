@@ -61,9 +61,9 @@ def plane(array, axis, k):
 
 
 def parity(face, dim, axis, vectors):
-    """What reflection at a face does to the slots of a node.
+    """Signs of the entries of a node under reflection at a face.
 
-    A mirror turns the normal components of both vectors round, a stick wall all of them.
+    A mirror reverses the normal components of both vectors, a stick wall reverses all components.
     """
     sign = np.ones(NODE)
     if vectors and face in (STICK, RELEASING_STICK):
@@ -282,7 +282,7 @@ def test_momentum_equation_and_conditions_on_the_faces(faces):
     )
 
 
-def test_friction_never_turns_the_slip_round():
+def test_friction_never_reverses_the_slip():
     """A wall that pushes hard stops the slip; it neither reverses it nor pulls."""
     records = np.zeros((9, NODE))
     records[:, 0] = 1.0

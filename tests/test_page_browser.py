@@ -1,4 +1,4 @@
-"""The page of a run in a real browser: it plays, turns, reads values, and asks for nothing."""
+"""The page of a run in a real browser: it plays, turns, reads values, and needs no network."""
 
 from __future__ import annotations
 

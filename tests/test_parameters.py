@@ -1,4 +1,4 @@
-"""Parameters at the top of a case: what formulas compute of them, and the sentences for what cannot be."""
+"""Parameters at the top of a case: values of formulas, and the sentences about wrong ones."""
 
 import copy
 import json

@@ -1,4 +1,4 @@
-"""What frames and histories hold of particles: states of laws, stress, and where the material has yielded."""
+"""Particle fields of frames and histories: state variables, stress, and the yielded zone."""
 
 import copy
 import json

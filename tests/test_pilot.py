@@ -1,4 +1,4 @@
-"""What a pilot on coarse cells says of a run, against the run."""
+"""The prediction of a pilot run on coarse cells, compared with the run."""
 
 import json
 import math
@@ -86,7 +86,7 @@ def test_a_pilot_that_diverges_says_nothing():
     ],
 )
 def test_expected_time_is_that_of_the_run_within_half_as_much_again(file, overrides):
-    """Both measured now, on this machine, however busy it is."""
+    """Both are measured at the same time, so that other work on the machine affects both."""
     case = load_case(CASES / file, overrides)
     expected = plan(case, threads=1)["expected_seconds"]
     start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What a run will cost: counts, limits, and memory against what is really allocated."""
+"""Cost of a run: counts, limits, and memory compared with the real allocation."""
 
 import json
 import math

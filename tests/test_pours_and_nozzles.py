@@ -1,4 +1,4 @@
-"""A pour brings in its mass and no more; a nozzle lays what its path says, from a table or from G-code."""
+"""A pour brings in exactly its mass; a nozzle follows its path, from a table or from G-code."""
 
 from __future__ import annotations
 
@@ -174,13 +174,13 @@ def gcode(*lines):
         (gcode("G0 X30 Y0 Z20 F60", "G1 X100 E-1"), "draws material back; a nozzle only pushes"),
     ],
 )
-def test_what_is_wrong_with_a_path_is_said(changes, sentence):
+def test_a_wrong_path_has_its_sentence(changes, sentence):
     with pytest.raises(CaseError) as error:
         case(PRINTED, **changes)
     assert sentence in str(error.value)
 
 
-def test_a_regularised_law_that_is_poured_is_told_what_it_costs_and_what_to_write():
+def test_a_regularised_law_in_a_pour_gives_a_warning_with_its_cost_and_a_cure():
     """At rest its viscosity is τ0 m = 1 MPa s, so that the viscous limit, 3/8 ρ Δx²/μ, is right."""
     regularised = {key: value for key, value in MORTAR.items() if key != "shear_modulus"} | {"law": "bingham"}
     poured = case(POUR, material=regularised)

@@ -1,4 +1,4 @@
-"""mpmkit as a guest: threads, processes, environment and encodings of the calling program."""
+"""mpmkit inside another program: threads, processes, environment and encodings of the caller."""
 
 from __future__ import annotations
 

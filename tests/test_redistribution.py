@@ -1,4 +1,4 @@
-"""What keeps volume, box and place of sheared particles the same, piece by piece."""
+"""The parts of the redistribution that keeps volume, box and position of sheared particles consistent."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
 
 
 @spaces
-def test_every_full_cell_weighs_what_it_is(space):
+def test_the_weighted_volumes_fill_every_full_cell(space):
     """Σ_p V_p w_p is the volume of the cells, however the particles lie in them."""
     simulation = filled(space, SEAMED)
     p = disorder(simulation, 0.1)
@@ -216,9 +216,9 @@ def test_weighted_volumes_fill_each_cell_where_most_boxes_lie_across_two():
     assert found["after"].max() < 0.006
 
 
-def test_material_comes_to_fill_the_room_there_is():
-    """Where there is 3 % too much of it, J falls by d ln J = -2 ln 1.03 dγ over as much shear as there was,
-    and no further. What the equation of state stores on the way is the energy of the redistribution."""
+def test_j_tends_to_the_available_volume():
+    """With 3 % too much material, ln J falls by 2 ln 1.03 dγ over the shear since the last redistribution,
+    and no further. The work of the equation of state on the way is the energy of the redistribution."""
     simulation = filled("plane-strain", SEAMED)
     p = simulation.particles
     simulation.operations.begin()
@@ -242,7 +242,8 @@ def test_material_comes_to_fill_the_room_there_is():
 
 
 def test_only_the_flow_carries_material_out_of_an_open_face():
-    """There a sink takes it, or a guard stops the run; no shift of places may bring that about."""
+    """Behind an open face a sink removes a particle, or a guard stops the run; a shift must not move one
+    there."""
     simulation = filled("plane-strain", {"plane-strain": {"z_min": "stick"}})
     simulation.operations.begin()
     redistribute(simulation, lambda ops: ops.shift(np.full((len(simulation.particles), 2), 0.6 * DX)))
@@ -265,7 +266,7 @@ def test_a_solid_keeps_its_places_and_boxes():
 
 
 def test_solids_alone_are_left_as_they_are():
-    """Nothing to do, to the bit: no fluid, no redistribution."""
+    """Without a fluid, the redistribution changes no bit."""
     velocity = {"amplitude": [0.5, 0.5], "wave_vector": [10.0, 10.0]}
     one, other = (filled("plane-strain", SEAMED, velocity, [RUBBER], kind) for kind in ("even", "none"))
     for _ in range(10):
@@ -352,7 +353,7 @@ def test_few_particles_in_three_dimensions_are_a_warning():
         ),
     ],
 )
-def test_what_even_does_not_need_is_said(scheme, sentence):
+def test_settings_without_effect_give_a_remark(scheme, sentence):
     assert any(sentence in said for said in forewarnings(filled("plane-strain", **scheme).case))
     assert not any(sentence in said for said in forewarnings(filled("plane-strain").case))
 

@@ -1,4 +1,4 @@
-"""What a redistribution puts in or takes is in the balance of energy, and excuses nothing."""
+"""Energy that a redistribution adds or removes is in the energy balance, and counts as created."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MASS = 1000 * AREA
 
 
 class Rare(Redistribution):
-    """What the tests make of it, once there was some shear."""
+    """A redistribution that acts rarely; the tests define its action."""
 
     name = "rare"
     api_version = 2
@@ -121,7 +121,7 @@ def test_what_even_puts_in_or_takes_is_what_the_energies_change_by(faces):
     assert simulation.redistribution_energy == pytest.approx(sum(changes), rel=1e-9)
 
 
-def test_the_balance_names_it_and_does_not_excuse_it():
+def test_the_balance_counts_it_as_created_and_names_it():
     """It is part of what was created; the rest of the scheme has done nothing yet."""
     simulation = with_(Squeezes())
     guards = simulation.guards
@@ -186,7 +186,7 @@ def test_a_steady_film_dissipates_the_power_of_gravity():
     assert simulation.time - begin == pytest.approx(0.1, rel=0.01)
 
 
-def test_in_a_tank_nothing_comes_from_nowhere():
+def test_no_energy_is_created_in_a_tank():
     simulation = with_(filled("plane-strain").case.scheme.redistribution, WALLED, WAVE, (0.0, -9.0))
     run(simulation, 300)
     balance = simulation.guards.balance

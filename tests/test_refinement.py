@@ -1,4 +1,4 @@
-"""Particles that are split and merged: that it ends, what a run keeps, and what a case says."""
+"""Splitting and merging: bounded numbers of particles, conserved sums, and the keys of a case."""
 
 from __future__ import annotations
 
@@ -106,8 +106,8 @@ def test_solids_and_other_materials_are_not_merged(materials):
             )
 
 
-def test_what_merging_takes_is_booked():
-    """The relative motion of merged particles is gone: nothing comes from nowhere, and nothing goes there."""
+def test_energy_lost_by_merging_is_in_the_ledger():
+    """The lost relative motion of merged particles is in the ledger; no other energy appears or vanishes."""
     simulation = scene()
     p = simulation.particles
     simulation.prepare()

@@ -1,4 +1,4 @@
-"""Discovery: whatever a stranger's distribution does stays its own problem, and is reported."""
+"""Discovery of plug-ins: a faulty third-party distribution is reported and disturbs no other plug-in."""
 
 import json
 import os
@@ -127,7 +127,7 @@ def test_two_of_one_name_are_both_refused(name, distribution):
 
 
 def test_a_misspelt_name_that_two_plugins_have(distribution):
-    """That name was meant, and the clash is the reason; not another name that is near."""
+    """The message gives the clash as the reason, and does not propose another similar name."""
     distribution("one-pack", wet=LAW.replace('"slurry"', '"bingham-evp"'))
     with pytest.raises(CaseError) as refused:
         parse_case(case("bingham-evpp"), registry=discover())
@@ -153,7 +153,7 @@ def test_a_name_that_clashes_is_taken(distribution, tmp_path, capsys):
     assert not (tmp_path / "new").exists()
 
 
-def test_a_kind_without_any_usable_plugin_is_told_of(distribution):
+def test_a_kind_without_any_usable_plugin_is_reported(distribution):
     source = """
         from mpmkit.contracts import VolumetricTreatment, hookimpl
 
@@ -212,7 +212,7 @@ def test_a_good_law_of_a_third_party_runs_from_the_command_line(distribution, tm
 
 
 @pytest.mark.parametrize("asked", ["option", "empty variable", "another named"])
-def test_third_parties_that_are_left_out_are_told_of_and_built_ins_stay(
+def test_third_parties_that_are_left_out_are_reported_and_built_ins_stay(
     asked, distribution, tmp_path, monkeypatch, capsys
 ):
     distribution("slurry-pack", slurry=LAW)
@@ -240,7 +240,7 @@ def test_third_parties_that_are_left_out_are_told_of_and_built_ins_stay(
     parse_case(case("bingham"))
 
 
-def test_a_named_distribution_that_is_not_there_is_told_of(distribution, monkeypatch):
+def test_a_named_distribution_that_is_missing_is_reported(distribution, monkeypatch):
     distribution("mud-pack", mud=LAW.replace('"slurry"', '"mud"'))
     monkeypatch.setenv("MPMKIT_PLUGINS", "mud-pack, no-such-pack")
     registry = discover()

@@ -28,7 +28,7 @@ FAULTS = {
 def test_a_law_that_fails_in_a_run_is_named_with_its_distribution(
     good, bad, reason, distribution, tmp_path, capsys
 ):
-    """Once it has been asked a few times; the summary says so, and other cases run on."""
+    """After a few calls the law fails: the summary names it, and other cases still run."""
     law = LAW.replace("import numpy as np", "import numpy as np\nasked = []")
     law = law.replace(
         "        return self.yield", "        asked.append(len(shear_rate))\n        return self.yield"
@@ -104,7 +104,7 @@ def test_a_law_that_fails_in_a_trial_is_named_by_every_command(
 
 
 def test_a_law_that_ends_the_process_ends_its_run(distribution, tmp_path, capsys):
-    """With status 3 and a word, where it was 0 and none; what was computed is kept."""
+    """With status 3 and a message (formerly 0 and none); the results so far are kept."""
     distribution("faulty-pack", slurry=failing("SystemExit(0)", "update_stress", after=6))
     path = tmp_path / "case.json"
     path.write_text(json.dumps(case() | {"until": 0.05}), encoding="utf-8")

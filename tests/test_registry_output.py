@@ -1,4 +1,4 @@
-"""What a plug-in prints, and changes of the process, does no harm to results."""
+"""Output of a plug-in, and its changes of the process, do not disturb results."""
 
 import json
 import logging
@@ -29,7 +29,7 @@ os.system("echo hello of a process")
     "arguments", [["plan", "case.json", "--json"], ["plugins", "--json"], ["schema"]], ids=" ".join
 )
 def test_what_a_plugin_prints_is_kept_out_of_json(arguments, distribution, tmp_path):
-    """Whatever way it prints, at import and in calls: the standard output is for results."""
+    """However it prints, at import or in calls: the standard output has only results."""
     distribution("loud-pack", talker=TALKATIVE)
     (tmp_path / "case.json").write_text(json.dumps(case("talker")), encoding="utf-8")
     path = os.pathsep.join([str(tmp_path), *sys.path])
@@ -92,7 +92,7 @@ def test_what_a_plugin_changes_of_the_process_is_undone(distribution, tmp_path, 
     assert "64 particles" in (tmp_path / "here" / "run.log").read_text(encoding="utf-8")
 
 
-def test_a_problem_of_one_plugin_is_not_told_of_another_with_a_similar_name(distribution):
+def test_a_problem_of_one_plugin_is_not_reported_for_another_with_a_similar_name(distribution):
     source = LAW.replace('"slurry"', '"slurry-evp"').replace("api_version = 2", "api_version = 9")
     distribution("old-pack", slurry_evp=source)
     registry = discover()

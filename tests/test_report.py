@@ -1,4 +1,4 @@
-"""The report: pictures of fabricated run directories, axisymmetric, 3-D and not a slump at all."""
+"""The report: pictures of fabricated run directories, axisymmetric, 3-D, and of scenes that are no slump."""
 
 from __future__ import annotations
 

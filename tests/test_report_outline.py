@@ -1,4 +1,5 @@
-"""The outline of scenes that are no slump test: off their planes, thrown out, not finite, periodic."""
+"""The outline of unusual scenes: off their planes of symmetry, with ejected or non-finite particles,
+periodic."""
 
 from __future__ import annotations
 
@@ -134,7 +135,7 @@ def test_material_that_is_drawn_out_shows_no_stripes(tmp_path):
     assert area == pytest.approx(11 * CELL * 7 * CELL / 4)  # between the outermost centres, all of it
 
 
-def test_what_is_apart_stays_apart():
+def test_separate_parts_are_drawn_separately():
     """Further than the grid reaches, or of another body."""
     points = lattice((0, 0.2), (0, 0.2))
     both = np.concatenate([points, points + np.array([0.4, 0])])
@@ -172,7 +173,7 @@ def test_a_film_fills_its_period(tmp_path):
     assert clip.ravel() == pytest.approx([-1000, 0, 1000, 1000])
 
 
-def test_times_are_told_apart(tmp_path):
+def test_different_times_have_different_titles(tmp_path):
     points = lattice((-0.3, 0.3), (0, 0.4))
     times = [0.0, 0.0501, 0.0504, 1.0]
     results = write_run(tmp_path, "plane-strain", dict.fromkeys(times, points), snapshot_times=times)

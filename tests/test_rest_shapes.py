@@ -1,4 +1,4 @@
-"""Closed forms of the laboratory's tests against the literature's formulas, and against each other."""
+"""Closed forms of the laboratory tests against published formulas, and against each other."""
 
 import math
 
@@ -124,7 +124,8 @@ def test_torque_at_rest_is_the_start_of_flow_and_grows_with_the_speed():
 
 @pytest.mark.parametrize("radius", [0.001, 0.05, 0.5])
 def test_drops_of_a_table_spend_their_energy_on_stretching_and_on_the_floor(radius):
-    """A cylinder 60 mm high that drops flatten to 30 mm; its work is summed here in steps of its height."""
+    """A cylinder of 60 mm is flattened to 30 mm by drops of the table; the test integrates its work over the
+    height."""
     low, first, sink, steps = 0.03, 0.06, 0.01, 4000
     volume, work, step = math.pi * radius**2 * low, 0.0, (first - low) / steps
     for k in range(steps):

@@ -1,4 +1,4 @@
-"""A run opened from its directory: lazy frames, and what a notebook shows of a case and of a run."""
+"""A run opened from its directory: lazy frames, and the display of cases and runs in notebooks."""
 
 import io
 import json

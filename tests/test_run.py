@@ -1,4 +1,4 @@
-"""How a run ends when it goes wrong: with the step and the particle, and with all that was recorded."""
+"""The end of a run that goes wrong: the message names step and particle, and the records are complete."""
 
 import json
 

@@ -8,27 +8,14 @@ import sys
 import time
 
 import pytest
+from test_cli import CASE as TINY
 
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, OutputError
 from mpmkit.output import RunDirectory
 
-CASE = {
-    "space": "plane-strain",
-    "until": 1e4,
-    "grid": {
-        "cell_size": 0.1,
-        "domain": {"x": [0, 1], "z": [0, 1]},
-        "faces": {"z_min": "slip", "x_min": "slip", "x_max": "slip"},
-    },
-    "bodies": [
-        {
-            "shape": {"kind": "box", "lower": [0.2, 0.0], "upper": [0.6, 0.4]},
-            "material": {"law": "newtonian", "density": 1000, "viscosity": 10, "sound_speed": 20},
-        }
-    ],
-    "output": {"report": False},
-}
+CASE = TINY | {"until": 1e4}
+"""It runs until it is stopped."""
 
 
 def refused(directory, overwrite=False):

@@ -1,4 +1,4 @@
-"""A run that cannot go on for what is not its flow: a plug-in that raises, a disk that is full."""
+"""Runs that stop for other reasons than the flow: a plug-in that raises, a full disk."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""A report that fails is reported in a sentence, and changes nothing of how a run ended."""
+"""A failure of the report gives a sentence, and does not change the result of the run."""
 
 import json
 

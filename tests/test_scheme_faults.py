@@ -1,4 +1,4 @@
-"""A volumetric treatment, a redistribution, a velocity update or an order that misuses its input is named."""
+"""A faulty volumetric treatment, redistribution, velocity update or order is named."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def test_an_order_that_is_sound_runs(calls):
     [("order", "acoustic_fraction"), ("order", "viscous_fraction"), ("velocity", "acoustic_fraction")],
 )
 def test_a_part_of_the_limit_that_is_none(kind, name, fraction):
-    """It was reported as a step that is too long, and the case was asked to shorten it."""
+    """Formerly, the message blamed the step and asked the user to shorten it."""
 
     class Update(VelocityUpdate):
         name = "of-the-tests"

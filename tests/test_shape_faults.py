@@ -1,4 +1,4 @@
-"""A shape function whose tables cannot be used is named, and a rehearsal changes nothing."""
+"""A shape function with unusable tables is named, and a rehearsal does not change results."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_a_shape_function_whose_tables_cannot_be_used(changes, reason):
     ids=["far", "far below", "all"],
 )
 def test_a_base_that_goes_astray_between_rehearsals(later):
-    """It led the compiled loops out of the nodes: signal 11."""
+    """Formerly, the compiled loops then accessed memory outside the nodes: signal 11."""
     said = blamed("shape", hats(later=later), steps=8)
     assert "stopped at step 2, " in said
     assert "the 'base' " in said
@@ -97,7 +97,7 @@ def test_a_base_that_goes_astray_between_rehearsals(later):
     ids=["nan", "heavy", "nan gradients", "gradients"],
 )
 def test_weights_that_go_astray_between_rehearsals(later, reason):
-    """They were told as a step that is too long, or not at all."""
+    """Formerly, the message blamed the step, or there was none."""
     assert reason in blamed("shape", hats(later=later), steps=25)
 
 

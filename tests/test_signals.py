@@ -1,4 +1,4 @@
-"""What batch systems send leaves a checkpoint; what comes too late does not spoil a run that has finished."""
+"""Signals of batch systems lead to a checkpoint; a late signal does not change a finished run."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_what_is_ignored_stays_ignored(tmp_path, monkeypatch, signals):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_a_process_that_hears_of_its_time(tmp_path):
+def test_a_process_that_gets_the_signal_of_a_time_limit(tmp_path):
     (tmp_path / "case.json").write_text(json.dumps(CASE | {"until": 1e4}))
     command = [
         sys.executable,
@@ -152,7 +152,7 @@ def test_a_signal_during_the_last_step_does_not_stop_what_is_done(tmp_path, monk
     assert not (tmp_path / "run/report").exists()
 
 
-def test_a_program_hears_of_an_interrupt_while_drawing(tmp_path, monkeypatch):
+def test_a_calling_program_gets_an_interrupt_while_drawing(tmp_path, monkeypatch):
     drawing_interrupted(monkeypatch)
     with pytest.raises(Undrawn, match="mpmkit report"):
         mpmkit.run(parse_case(CASE), tmp_path / "run")
@@ -195,7 +195,7 @@ def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(tmp_path, monk
     assert "cannot write 'x': No space left on device; the one before it stays" in caplog.text
 
 
-def test_nor_does_one_that_does_not_fit_into_memory(tmp_path, monkeypatch, caplog):
+def test_a_checkpoint_that_does_not_fit_into_memory_does_not_end_the_run(tmp_path, monkeypatch, caplog):
     def too_large(self):
         raise MemoryError("unable to allocate")
 

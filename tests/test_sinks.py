@@ -1,4 +1,4 @@
-"""What leaves through an open face or a drain is taken out and counted, where the case says so."""
+"""Sinks remove and count the material that leaves through an open face or a drain."""
 
 from __future__ import annotations
 
@@ -97,14 +97,14 @@ def test_a_block_that_falls_through_a_face_leaves_as_fast_as_it_falls():
     assert abs(taken[-1]) < abs(momentum.values[-1])
 
 
-def test_where_the_case_does_not_say_so_the_run_is_stopped():
+def test_without_a_sink_the_run_is_stopped():
     with pytest.raises(
         GuardStop, match=r"left the grid at x = .*, z = .*; enlarge grid\.domain or close that"
     ):
         run(sinks={})
 
 
-def test_who_says_so_is_not_warned_of_an_open_floor():
+def test_an_open_floor_with_a_sink_gives_no_warning():
     free = {"walls": {}}
     closed = parse_case(copy.deepcopy(OPENING) | free | {"sinks": {}})
     assert any("has no floor" in sentence for sentence in forewarnings(closed))
@@ -123,7 +123,7 @@ def test_a_run_ends_when_enough_has_left_or_all():
     assert float(history.total_mass[-1]) < 0.15 * 1500 * 0.008  # the last row, which stays
 
 
-def test_it_goes_on_with_the_same_bits(drained, tmp_path):
+def test_a_resumed_run_has_the_same_bits(drained, tmp_path):
     _, path = drained
     short = tmp_path / "short"
     run(0.2, out=short, output={"report": False, "history_interval": 0.3 / 400, "frame_interval": 0.3 / 20})
@@ -179,7 +179,7 @@ def test_a_drain_in_the_scene_takes_what_comes_into_it():
         ({"kind": "box", "lower": [0, 1], "upper": [1, 0]}, "lower must be below upper along each axis"),
     ],
 )
-def test_what_is_wrong_is_said(sink, sentence):
+def test_a_wrong_sink_has_its_sentence(sink, sentence):
     with pytest.raises(CaseError) as error:
         parse_case(copy.deepcopy(OPENING) | {"sinks": {"s": sink}})
     assert sentence in str(error.value)
@@ -192,7 +192,7 @@ class Rows(Sink):
         return np.flatnonzero(x[:, -1] < 0)
 
 
-def test_a_sink_at_fault_is_told():
+def test_a_faulty_sink_is_named():
     found = [entry for entries in installed().plugins.values() for entry in entries.values()]
     registry = Registry([*found, Registered("sink", Rows, "tests", "1", "rows")], [])
     simulation = Simulation(parse_case(copy.deepcopy(OPENING) | {"sinks": {"s": "rows"}}, registry=registry))

@@ -1,4 +1,4 @@
-"""What a simulation does with a scene beside its physics: groups, symmetry, guards, general mappings."""
+"""A simulation of a scene, apart from the physics: groups, symmetry, guards, general mappings."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def scene(
 
 
 def test_law_with_its_own_pressure_needs_no_deformation_gradient():
-    """Squeezed between walls that it flies at, it answers with its own state, of each particle."""
+    """The material is compressed between walls; its stress comes from the state of each particle."""
     material = {"law": "hypoelastic", "density": 1000.0, "bulk_modulus": 1e5}
     simulation = scene(
         [box([0.5, 0.5], [1.0, 1.0], material, velocity=[-1.0, 0.0])],

@@ -1,4 +1,4 @@
-"""The order of the particles: a stable sort by block and cell, and blocks of one colour that never meet."""
+"""The order of the particles: a stable sort by block and cell; blocks of one colour share no node."""
 
 from __future__ import annotations
 

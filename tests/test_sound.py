@@ -54,7 +54,8 @@ def test_the_mach_number_stays_below_what_was_asked_and_steps_grow_as_the_body_f
 
 
 def test_a_modulus_stays_as_it_is_where_the_sound_falls():
-    """Fault 5: G = 0.05 ρ c² fell with the sound, until the sheet at rest had yielded at 2.3 %."""
+    """A former fault (5): G = 0.05 ρ c² fell with the sound speed, until the yield strain of the sheet at
+    rest was 2.3 %."""
     simulation = Simulation(fast({"mach": 0.1}))
     advance(simulation, 0.7)
     (group,) = simulation.particles.groups
@@ -137,7 +138,7 @@ def test_another_sound_speed_is_taken_at_the_same_energy_and_slowly():
 
 
 def test_the_slump_is_that_of_a_constant_sound_speed():
-    """The compressibility is the same part of the head at all times; the spread does not notice."""
+    """The compressibility stays the same part of the head, so the spread does not change."""
     follows, constant = (
         mpmkit.run(fast(c, until=0.6)).spread_diameter for c in ({"mach": 0.1}, {"factor": 10})
     )

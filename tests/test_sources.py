@@ -1,4 +1,4 @@
-"""What comes in through a source is what the case says, without a pulse, and is accounted for."""
+"""Sources bring in what the case says, without a pressure pulse, and the ledger has it."""
 
 from __future__ import annotations
 
@@ -224,7 +224,7 @@ class Setting(ConstitutiveLaw):
         stress[:] = 0.0
 
 
-def test_a_law_that_asks_for_it_knows_the_age():
+def test_a_law_that_needs_the_age_gets_it():
     found = [entry for entries in installed().plugins.values() for entry in entries.values()]
     registry = Registry([*found, Registered("law", Setting, "tests", "1", "setting")], [])
     material = {"law": "setting", "density": DENSITY, "sound_speed": SOUND}
@@ -277,7 +277,7 @@ def test_plan_and_memory_count_what_will_come_in():
         ({"sources": pump(kind="inle")}, "sources.pump.kind is \"inle\"; it must be"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_said(changes, sentence):
+def test_a_wrong_source_has_its_sentence(changes, sentence):
     with pytest.raises(CaseError) as error:
         case(**changes)
     assert sentence in str(error.value)

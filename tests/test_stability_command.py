@@ -1,4 +1,4 @@
-"""The largest stable step: how it is judged, and what is found of schemes whose limits are known."""
+"""The largest stable step: the criteria, and results for schemes with known limits."""
 
 import dataclasses
 import json
@@ -49,18 +49,18 @@ def broken(found, fine=None, data=FREE):
     return Criteria().broken(parse_case(data), found, fine or falling())
 
 
-def test_what_a_fine_solution_does_itself_is_stable():
+def test_growth_as_in_the_fine_solution_is_stable():
     assert broken(falling()) is None
 
 
-def test_energy_from_nowhere():
+def test_created_energy_is_unstable():
     energy = falling().energy * np.linspace(1, 1.02, 11)
     assert broken(dataclasses.replace(falling(), energy=energy)) == "energy"
     lost = falling().energy * np.linspace(1, 0.98, 11)
     assert broken(dataclasses.replace(falling(), energy=lost)) is None  # that is dissipation
 
 
-def test_momentum_from_nowhere_where_nothing_acts_from_outside():
+def test_momentum_without_an_external_force_is_unstable():
     momentum = falling().momentum.copy()
     momentum[5:] *= 1.001
     found = dataclasses.replace(falling(), momentum=momentum)
@@ -68,7 +68,7 @@ def test_momentum_from_nowhere_where_nothing_acts_from_outside():
     assert broken(found, data=COLUMN | {"gravity": [0, 0]}) is None  # a wall may give it
 
 
-def test_where_it_leads():
+def test_distance_from_the_fine_solution_is_unstable():
     moved = falling().position * np.array([1.2, 1.0])
     found = dataclasses.replace(falling(), position=moved)
     assert distance(found, falling()) == pytest.approx(0.2 / math.sqrt(2))
@@ -82,7 +82,7 @@ def test_a_guard_and_a_short_run():
     assert broken(dataclasses.replace(falling(), energy=energy)) == "guard"
 
 
-def test_a_fraction_is_taken_whatever_the_schemes_bear():
+def test_a_fraction_beyond_the_declared_limit_is_used():
     case = parse_case(COLUMN, ["scheme.order=usl", "scheme.time_step.fraction=1"])
     kept, tried = Simulation(case), Simulation(case, fraction=0.9)
     assert kept.time_step == pytest.approx(0.4 * kept.limits.acoustic)
@@ -116,12 +116,12 @@ def test_a_trace_goes_on_beyond_periodic_faces():
     assert gone == pytest.approx(np.tile([0.75, 0.0], (100, 1)), abs=1e-9)  # one and a half periods
 
 
-def test_no_more_is_tried_than_was_asked_for():
+def test_only_the_requested_combinations_are_tried():
     found = critical_fraction(parse_case(COLUMN), largest=0.3)
     assert (found.fraction, found.unstable, found.broken) == (0.3, math.inf, "")
 
 
-def test_usl_bears_less_than_musl_and_each_what_it_says():
+def test_usl_is_stable_for_shorter_steps_than_musl_as_declared():
     """Inside a body USL bears 0.756 of dx/c and MUSL √2 of it and more; surfaces take some of it."""
     found = {
         labels["order"]: critical_fraction(case)

@@ -1,4 +1,4 @@
-"""What a law remembers: where it starts from, and what is said where it starts from nowhere."""
+"""State variables of laws: their start values, and the sentences about missing or wrong ones."""
 
 from __future__ import annotations
 

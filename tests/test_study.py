@@ -1,4 +1,4 @@
-"""Studies: their members, their dataset, what fails among them, and what is not run again."""
+"""Studies: members, dataset, failed members, and members that are not run again."""
 
 import json
 from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
@@ -257,7 +257,7 @@ def test_a_directory_that_holds_something_else(tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("undrawn")
 def test_members_are_kept_as_they_end(tmp_path):
-    """Not only when all have: of a study that dies, nothing is lost."""
+    """The result of a member is written when it ends, so that a study that dies loses no results."""
     given, seen = study(vary={"until": [0.001, 0.002, 0.003]}), []
 
     def listen(member, outcome):

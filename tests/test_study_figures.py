@@ -1,4 +1,4 @@
-"""The figures of a study: who is the base, what the curves are called, and that they can be told apart."""
+"""The figures of a study: the base of differences, labels of curves, and distinct styles."""
 
 import numpy as np
 import pytest

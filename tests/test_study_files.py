@@ -1,4 +1,4 @@
-"""Study files and ``--vary``: what they may say, and the one sentence for what they may not."""
+"""Study files and ``--vary``: valid ones, and one sentence for each wrong one."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What is kept of a study is not replaced by another one, and what is damaged of it is run again."""
+"""Results of a study are not replaced by another study, and damaged results are run again."""
 
 import json
 from contextlib import nullcontext

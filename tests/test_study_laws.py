@@ -1,4 +1,4 @@
-"""Another law for the same material: fitted to the flow curve of the one that the case has."""
+"""Another law for the same material is fitted to the flow curve of the law in the case."""
 
 import copy
 

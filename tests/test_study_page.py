@@ -1,4 +1,4 @@
-"""Pages of studies and of stability maps: what they hold, and that a browser shows it."""
+"""Pages of studies and of stability maps: their content, also in a browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cheaper models of a scene with walls are offered where the walls have the symmetry, and have them too."""
+"""Cheaper models of a scene with walls: offered only if the walls have the symmetry, and with the walls."""
 
 import json
 

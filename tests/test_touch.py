@@ -1,4 +1,4 @@
-"""A wall acts where material has reached it: which nodes are touched, and what that does."""
+"""A wall acts where material touches it: the touched nodes, and the effect on the motion."""
 
 from __future__ import annotations
 
@@ -212,8 +212,8 @@ def by_number(simulation, name):
 
 
 @pytest.mark.parametrize("wall", WALLS, ids=str)
-def test_no_wall_acts_in_the_air(wall):
-    """A block falls as if there were no floor, until its boxes are there."""
+def test_a_wall_does_not_act_before_contact(wall):
+    """A block falls freely until its boxes reach the floor."""
     block = {"lower": [1, 0.5], "upper": [3, 2.5], "order": "musl"}
     floor, free = (scene("plane-strain", faces, **block) for faces in ({"z_min": wall}, {}))
     p, acted = floor.particles, False
@@ -227,8 +227,8 @@ def test_no_wall_acts_in_the_air(wall):
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
 @pytest.mark.parametrize("wall", ["slip", RELEASING, RUB], ids=str)
-def test_a_wall_lets_go_of_what_rests_on_it(wall, order):
-    """Gravity points upwards: the block leaves in free fall, and the wall has not pulled once."""
+def test_a_wall_releases_a_block_at_rest(wall, order):
+    """Gravity points upwards: the block leaves in free fall, and the wall never pulls."""
     simulation = scene("plane-strain", {"z_min": wall}, [1, 0], [3, 2], gravity=2.0, order=order)
     advance(simulation, 1)
     assert found_bits(simulation)

@@ -1,4 +1,4 @@
-"""A run that ends when the material is at rest, or when a variable of its history is far enough."""
+"""Runs that end at rest, or when a variable of the history reaches a value."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_creep_is_not_rest():
     assert scene.time == pytest.approx(1 / 0.75, abs=2 * LOOKS * 1e-3)
 
 
-def test_a_wobble_is_rest():
+def test_an_oscillation_counts_as_rest():
     def wobble(t):
         return 0.5 + (0.1 * t if t < 1 else 0.1 + 0.4 * KEPT * 0.3 * np.sin(60 * t))
 
@@ -198,7 +198,7 @@ def test_a_condition_ends_the_run_at_the_first_look_at_which_it_holds(tmp_path):
     assert before < 0.49 <= found["final_spread"]
 
 
-def test_the_time_that_comes_first_is_told(caplog):
+def test_reaching_at_most_first_gives_a_warning(caplog):
     case = cake({"spread_diameter": {"at_least": 2}, "rest": True, "at_most": 0.02})
     with caplog.at_level(logging.WARNING, logger="mpmkit"):
         history = mpmkit.run(case)
@@ -219,7 +219,7 @@ def test_the_time_that_comes_first_is_told(caplog):
         ("4", "until is \"4\"; it must be a number above 0, in s, or an object with the key 'at_most'"),
     ],
 )
-def test_what_is_wrong_is_said(until, sentence):
+def test_a_wrong_until_has_its_sentence(until, sentence):
     with pytest.raises(CaseError) as error:
         cake(until)
     assert sentence in str(error.value)

@@ -1,4 +1,4 @@
-"""The sheet of the validation tests, and the report that is made of it."""
+"""The sheet of the validation tests, and the report made from it."""
 
 import json
 import os

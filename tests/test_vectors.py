@@ -116,7 +116,7 @@ def test_pack_and_lane_keep_the_order():
 
 
 def test_a_scalar_beyond_a_number_stays_in_its_lane():
-    """Zero times what is no number is none: only lanes that hold one may be spoilt."""
+    """Zero times NaN is NaN, so a NaN may only affect its own lane."""
     x, out = np.ones(LANES), np.empty((3, LANES))
     x[3], x[5] = np.nan, np.inf
     _combine(x, np.ones(LANES), 0.5, out)

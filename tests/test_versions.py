@@ -1,4 +1,4 @@
-"""Versions of the plug-in contracts: those of version 1 work; their authors hear what to change."""
+"""Versions of the plug-in contracts: plug-ins of version 1 work, and a message says what to change."""
 
 import json
 from pathlib import Path

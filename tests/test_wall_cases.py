@@ -1,4 +1,4 @@
-"""Walls in a case: what they leave room for, and what is read and written."""
+"""Walls in a case: overlaps with bodies, and reading and writing."""
 
 import json
 import pickle

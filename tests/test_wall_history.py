@@ -66,7 +66,7 @@ def test_history_without_walls_has_none(tmp_path):
 
 
 def test_a_plate_that_drags_a_fluid_creates_no_energy():
-    """The guard counts the work of the wall; what is left is what the scheme creates, at most none."""
+    """The guard counts the work of the wall; the rest is created by the scheme, and must not be positive."""
     drag = {"kind": "velocity", "velocity": [1.0, 0.0]}
     simulation = simulated(
         {
@@ -118,7 +118,7 @@ def test_a_piston_that_starts_at_a_face_throws_nothing(face, contact, gap):
 
 @pytest.mark.parametrize(("face", "point", "speed"), [("x_min", -0.5, 0.5), ("x_max", 1.0, -0.5)])
 def test_no_wall_moves_into_the_scene_from_a_plane_of_symmetry(face, point, speed):
-    """The plane would go on holding the nodes that the wall has come over."""
+    """The plane would still hold the nodes that the wall has passed."""
     motion = {"kind": "velocity", "velocity": [speed, 0.0]}
     walls = {"piston": wall([point, 0.0], [math.copysign(1, speed), 0.0], "slip", motion=motion)}
     for kind in ("slip", "symmetry"):

@@ -59,7 +59,8 @@ def test_fold_and_fill_are_transposes(odd, space):
 @pytest.mark.parametrize("whole", [False, True])
 @pytest.mark.parametrize("degrees", [0.0, 25.0, 45.0])
 def test_push_adds_no_kinetic_energy(whole, degrees):
-    """Of nodes against a wall at rest, whatever they do, however many sweeps there are."""
+    """For any velocities of the nodes and any number of sweeps, a wall at rest does not add kinetic
+    energy."""
     simulation, near = laid(degrees=degrees)
     dim, random = simulation.grid.dim, np.random.default_rng(5)
     count = len(near.active)
@@ -71,7 +72,7 @@ def test_push_adds_no_kinetic_energy(whole, degrees):
             before = (nodes[:, :1] * nodes[:, 1 : 1 + dim] ** 2).sum()
             acting = wall_contact.at_wall_velocities(
                 nodes, near.at_wall, near.at, near.d, near.normal, near.index, near.weight, near.free,
-                near.acting, near.share, near.stiffness, near.velocity, near.inner,
+                near.acting, near.share, near.inverse_mass, near.velocity, near.inner,
             )  # fmt: skip
             assert acting > 4
             at_wall = near.velocity[:acting].copy()
@@ -87,7 +88,7 @@ def test_push_adds_no_kinetic_energy(whole, degrees):
                 near.index,
                 near.free,
                 near.share,
-                near.stiffness,
+                near.inverse_mass,
             )
             wall_contact.give(nodes, *of_wall, at_wall, after, False, impulse, held)
             for turn in range(sweeps):
@@ -162,7 +163,7 @@ def test_walls_that_meet_are_one_symmetric_constraint(space):
 
 @pytest.mark.parametrize("degrees", [0.0, 25.0, 70.0])
 def test_particles_in_a_wall_are_put_to_its_surface(degrees):
-    """Along the normal; the others stay."""
+    """They are moved along the normal; the other particles stay."""
     simulation, near = laid(degrees=degrees)
     normal = np.array([-math.sin(math.radians(degrees)), math.cos(math.radians(degrees))])
     foot = np.array([0.3, 0.3]) - simulation.grid.lower

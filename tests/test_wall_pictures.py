@@ -1,4 +1,4 @@
-"""Walls in the pictures of a report: where they are at the time of each, their names, what they do."""
+"""Walls in the pictures of a report: their positions at each time, their names, and their forces."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Walls in a case: the sentence for what cannot be."""
+"""Walls in a case: the sentences about wrong ones."""
 
 import copy
 import re
@@ -125,7 +125,7 @@ def test_a_bad_wall_is_one_sentence(path, value, part):
                 "normal": [0, 1],
                 "motion": {"kind": "rotation", "point": [0, 0], "rate": 1},
             },
-            "a plane has no end, and its speed would have none; use a body, such as a box",
+            "a plane is infinite, and so would be its speed; use a body, such as a box",
         ),
         (
             {
@@ -256,8 +256,8 @@ SCENES = {
 
 
 @pytest.mark.parametrize("space", SCENES)
-def test_whatever_stands_in_a_wall_is_read_or_told_of(space):
-    """Every sixth of all junk at all places: numbers beyond reason as well, and no warning of NumPy."""
+def test_any_value_in_a_wall_is_read_or_has_its_sentence(space):
+    """A sixth of all wrong values at all places, extreme numbers included; NumPy must not warn."""
     walls = {"walls": SCENES[space]}
     data = changed() | walls
     if space == "3d":

@@ -1,4 +1,4 @@
-"""Walls in the solver: what they do to nodes and particles, to the bit where it is exact."""
+"""Walls in the solver: their effect on nodes and particles."""
 
 from __future__ import annotations
 

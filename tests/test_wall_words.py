@@ -1,4 +1,4 @@
-"""Walls in words: what a run says of each before it starts, and where a guard stopped it."""
+"""Walls in words: the description of each wall before a run, and in the message of a guard."""
 
 import json
 from pathlib import Path

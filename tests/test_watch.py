@@ -183,7 +183,7 @@ def test_the_last_page_does_not_wait(slump, tmp_path):
     assert pages.latest()[0] == pages.version() != first[0]
 
 
-def test_a_browser_that_watches_is_told_that_the_run_has_ended(server):
+def test_a_watching_browser_gets_the_end_of_the_run(server):
     get(server.address + "state.json")
     ending = threading.Thread(target=server.end)
     ending.start()
@@ -195,7 +195,7 @@ def test_a_browser_that_watches_is_told_that_the_run_has_ended(server):
     assert not ending.is_alive()
 
 
-def test_nobody_waits_where_nobody_watches(server):
+def test_without_a_watching_browser_the_end_is_not_delayed(server):
     start = time.monotonic()
     server.end()
     assert time.monotonic() - start < 0.5

@@ -1,4 +1,4 @@
-"""The live page in a real browser: it shows what the run has written, follows it, and hears of its end."""
+"""The live page in a real browser: it shows the written results, follows the run, and shows its end."""
 
 import shutil
 import threading

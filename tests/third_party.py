@@ -1,4 +1,4 @@
-"""A stranger's distribution with laws, found by mpmkit until the test is over."""
+"""A third-party distribution with laws, which mpmkit finds until the end of the test."""
 
 import sys
 import textwrap

@@ -24,10 +24,13 @@ from pydantic_core import PydanticKnownError
 
 from ..contracts import BodyShape, ConstitutiveLaw, Plugin, Source
 from ..registry import Registry, installed
+from .bodies import Body, Inflow
 from .consistency import check
 from .html import case_html
-from .model import Body, Case, Inflow, Material, Scheme, Wall
+from .material import Material
+from .model import Case, Wall
 from .output import OutputSettings
+from .scheme import Scheme
 
 
 class CheckedCase(Case):
@@ -126,8 +129,12 @@ def _by_name(registry: Registry, kind: str, field: Any) -> tuple[Any, Any]:
     return _of_names(_one_of(kind, registry.of_kind(kind), "kind")), field
 
 
+def _fields_of(plugin: type[Plugin]) -> dict[str, tuple[Any, Any]]:
+    """The parameters of a plug-in as fields of another model."""
+    return {name: (field.annotation, field) for name, field in plugin.model_fields.items()}
+
+
 def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Material]:
-    own_fields = {name: (field.annotation, field) for name, field in law.model_fields.items()}
     base = type("Material", (Material,), {"law_class": law, "__module__": Material.__module__})
     return create_model(
         f"Material_{law.__name__}",
@@ -137,12 +144,11 @@ def _material_model(law: type[ConstitutiveLaw], registry: Registry) -> type[Mate
         equation_of_state=_choice(
             registry, "equation_of_state", "linear", "pressure as a function of the volume ratio J"
         ),
-        **own_fields,  # type: ignore[call-overload]
+        **_fields_of(law),  # type: ignore[call-overload]
     )
 
 
 def _inflow_model(source: type[Source], material: Any) -> type[Inflow]:
-    own_fields = {name: (field.annotation, field) for name, field in source.model_fields.items()}
     base = type("Inflow", (Inflow,), {"source_class": source, "__module__": Inflow.__module__})
     return create_model(
         f"Inflow_{source.__name__}",
@@ -150,7 +156,7 @@ def _inflow_model(source: type[Source], material: Any) -> type[Inflow]:
         __doc__=source.__doc__,
         kind=(Literal[source.name], ...),
         material=(material, Inflow.model_fields["material"]),
-        **own_fields,  # type: ignore[call-overload]
+        **_fields_of(source),  # type: ignore[call-overload]
     )
 
 

@@ -21,9 +21,10 @@ from .draining import drain_columns
 from .ending import Until
 from .forces import check_forces, check_symmetry_of_forces, force_columns
 from .initial_fields import check_initial_fields
+from .material import Material
 from .measurement_rules import check_measurements
 from .measurements import MEANS, means
-from .model import Case, Material
+from .model import Case
 from .shapes import check_shape
 from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 from .sources import check_inflows, check_mouths, source_columns

@@ -21,11 +21,11 @@ class Friction(Model):
 
 
 class Stick(Model):
-    """A wall to which material sticks; with ``releases`` it lets go of material instead of pulling it."""
+    """A wall to which material sticks; with ``releases`` it releases material instead of pulling it."""
 
     kind: Literal["stick"]
     releases: bool = Field(
-        description='whether the wall lets go of material that it would have to pull; the plain name "stick" '
+        description='whether the wall releases material that it would have to pull; the plain name "stick" '
         "does not"
     )
 

@@ -14,7 +14,9 @@ import numpy as np
 
 from ..registry import audit
 from ..registry.blame import blaming_plugins
-from .model import Body, Case, Material
+from .bodies import Body
+from .material import Material
+from .model import Case
 from .plausibility import implausible
 from .walls import ROUNDING, wall_between
 
@@ -138,7 +140,7 @@ def _hangs(case: Case) -> Iterator[str]:
                     why = "gravity pulls" if falls else "its velocity takes"
                     yield (
                         f"bodies.{number} hangs from the face {side}: {why} it away from there, but a "
-                        f'"{face}" face does not let go of what is at it; "slip" does'
+                        f'"{face}" face does not release material that touches it; "slip" does'
                     )
 
 
@@ -157,7 +159,7 @@ def _swings_off(case: Case) -> Iterator[str]:
                 side = _side(case, axis, upwards)
                 if case.grid.faces.get(side) == "slip" and _touches(case, body, axis, upwards):
                     yield (
-                        f'bodies.{number} is not held by the face {side}: it swings, and a "slip" wall '
+                        f'bodies.{number} is not held by the face {side}: it oscillates, and a "slip" wall '
                         "pushes but does not pull, unlike in versions before 0.8; for a plane that holds it "
                         f'write "{side}": "symmetry" in grid.faces'
                     )
@@ -175,8 +177,8 @@ def _thin(case: Case) -> Iterator[str]:
         elif cells < ENOUGH_OF_A_WALL * (1 - ROUNDING):
             yield (
                 f"walls.{name} is {cells:.2g} cells thick: the nodes in it that belong to its other side are "
-                "within reach of the material, and the pressure on it can be wrong by a tenth, or energy be "
-                f"created; make it at least {ENOUGH_OF_A_WALL:g} cells thick, or the cells smaller"
+                "within reach of the material, so the pressure on it can be wrong by a tenth, and energy can "
+                f"be created; make it at least {ENOUGH_OF_A_WALL:g} cells thick, or the cells smaller"
             )
 
 

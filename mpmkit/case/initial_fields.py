@@ -5,7 +5,8 @@ from __future__ import annotations
 from ..registry.audit.initial_fields import LAW, shape_of
 from ..registry.blame import blaming_plugins
 from .allowed import one_of, shown
-from .model import Body, Case
+from .bodies import Body
+from .model import Case
 
 
 def check_initial_fields(where: str, body: Body, case: Case) -> None:

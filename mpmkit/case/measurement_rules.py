@@ -22,8 +22,8 @@ def check_measurements(case: Case) -> None:
     for name in case.measurements:
         if not NAME.fullmatch(name) or name in {*NAMES, *TAKEN, *FUNCTIONS, *UNITS}:
             raise ValueError(
-                f"{SELF} has one called '{name}'; a name must be of small letters, digits and '_', first a "
-                "letter, and not that of a variable, a figure or a function that there is"
+                f"{SELF} has one called '{name}'; a name must be of lower-case letters, digits and '_', "
+                "begin with a letter, and not be that of a variable, a figure or a function"
             )
     measured(case.measurements, _Numbers(), functions(_Asked(case)))
 

@@ -1,4 +1,4 @@
-"""The case: a scene, its materials and the schemes that solve it, as pydantic models.
+"""The case: a whole scene, as a pydantic model.
 
 ``composed`` adds the parts that depend on the registered plug-ins.
 """
@@ -8,234 +8,29 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, PrivateAttr, Tag, ValidationError, model_validator
+from pydantic import Field
 
-from ..contracts import (
-    Beginning,
-    BodyForce,
-    BodyShape,
-    ConstitutiveLaw,
-    Contact,
-    EquationOfState,
-    InitialField,
-    Mouth,
-    Sink,
-    Source,
-    Surface,
-    quantity,
-)
-from ..contracts.order import UpdateOrder
-from ..contracts.redistribution import Redistribution
-from ..contracts.refinement import Refinement
+from ..contracts import Beginning, BodyForce, Contact, Mouth, Sink, Surface, quantity
 from ..contracts.scale import Scale
-from ..contracts.shape import ShapeFunction
-from ..contracts.velocity import VelocityUpdate
-from ..contracts.volumetric import VolumetricTreatment
 from ..registry.audit import forces
 from ..registry.audit.initial_fields import initial_values, shape_of
 from ..spaces import SPACES, Space
 from .base import Model, name_of_directory
+from .bodies import Body, Inflow
 from .ending import AnyUntil, latest
-from .faces import Face
+from .grid import Grid
+from .material import Material
 from .measurements import Measurement
 from .output import OutputSettings
-from .sound_speed import SoundSpeed, SoundSpeedFactor, SoundSpeedMach
+from .scheme import Scheme
+from .sound_speed import SoundSpeedFactor, SoundSpeedMach
 
 STANDARD_GRAVITY = 9.81
 SAMPLES = 9
-"""Places along each axis at which the largest speed of an initial field is looked for."""
-
-
-class Grid(Model):
-    """The background grid: cubic cells on a box whose faces carry the boundary conditions."""
-
-    cell_size: float = quantity("m", "side of a cell", gt=0)
-    domain: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = quantity(
-        "m",
-        "lower and upper end of the domain along each axis of the space; at an open face an end is moved out "
-        "to a whole number of cells",
-    )
-    faces: dict[str, Face] = Field(
-        default={}, description="condition on each face, such as z_min; default: every face is open"
-    )
-
-    _extensions: list[str] = PrivateAttr(default_factory=list)
-
-    @property
-    def extensions(self) -> tuple[str, ...]:
-        """Sentences on the axes along which the domain was extended to whole cells; see ``whole_cells``."""
-        return tuple(self._extensions)
-
-    def note_extension(self, sentence: str) -> None:
-        """Keep a sentence, for the log of the run."""
-        self._extensions.append(sentence)
-
-
-class Material(Model):
-    """A constitutive law with its parameters, a density and, for a fluid, a sound speed."""
-
-    law: str = Field(description="name of the constitutive law")
-    density: float = quantity("kg/m^3", "initial density", gt=0)
-    sound_speed: SoundSpeed | None = quantity(
-        "m/s", "artificial sound speed, or a factor of √(2 g h), or the largest Mach number", default=None
-    )
-    equation_of_state: EquationOfState
-
-    law_class: ClassVar[type[ConstitutiveLaw]]
-
-    @cached_property
-    def constitutive_law(self) -> ConstitutiveLaw:
-        """The law with its parameters."""
-        return self.law_class.model_validate(
-            {name: getattr(self, name) for name in self.law_class.model_fields}
-        )
-
-
-class SineVelocity(Model):
-    """A standing wave as initial velocity: v(x) = amplitude sin(wave_vector · x)."""
-
-    amplitude: list[float] = quantity("m/s", "amplitude along each axis")
-    wave_vector: list[float] = quantity("rad/m", "2 pi over the wave length, along each axis")
-
-    def at(self, position: np.ndarray) -> np.ndarray:
-        """Velocity, m/s, ``(n, dim)``, at positions ``(n, dim)``, m."""
-        return np.sin(position @ np.array(self.wave_vector))[:, None] * np.array(self.amplitude)
-
-
-def _velocity_tag(value: Any) -> str:
-    return "sine" if isinstance(value, dict | SineVelocity) else "uniform"
-
-
-InitialVelocity = Annotated[
-    Annotated[list[float], Tag("uniform")] | Annotated[SineVelocity, Tag("sine")],
-    Discriminator(_velocity_tag),
-]
-
-
-ParticleCount = Annotated[int, Field(gt=0, le=1000)]
-
-
-class Body(Model):
-    """A shape filled with a material."""
-
-    shape: BodyShape = Field(description="where the body is at the start")
-    material: Material = Field(description="what the body is made of")
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
-        "1",
-        "particles in a full cell (a square or cubic number), or their number along each axis; "
-        "default: 2 along each axis",
-        default=None,
-    )
-    velocity: InitialVelocity | None = quantity(
-        "m/s", "initial velocity along each axis, or a standing wave; default: at rest", default=None
-    )
-    initial: dict[str, InitialField] = Field(
-        default={},
-        description="fields at the start: 'velocity', 'stress', or 'law.' and the name of a state variable",
-    )
-
-    def particles_along_axes(self, dim: int) -> tuple[int, ...]:
-        """Particles along each axis of a full cell."""
-        return particles_along_axes(self.particles_per_cell, dim)
-
-    @property
-    def largest_speed(self) -> float:
-        """Upper bound of the initial speed, m/s."""
-        if self.velocity is None:
-            return 0.0
-        vector = self.velocity if isinstance(self.velocity, list) else self.velocity.amplitude
-        return math.hypot(*vector)
-
-
-def particles_along_axes(per_cell: int | list[int] | None, dim: int) -> tuple[int, ...]:
-    """Particles along each axis of a full cell, of their number in it as in a case."""
-    if per_cell is None:
-        return (2,) * dim
-    if isinstance(per_cell, list):
-        return tuple(per_cell)
-    return (round(per_cell ** (1 / dim)),) * dim
-
-
-class Inflow(Model):
-    """A source with its material."""
-
-    kind: str = Field(description="name of the source")
-    material: Material = Field(description="what comes in")
-    particles_per_cell: ParticleCount | list[ParticleCount] | None = quantity(
-        "1",
-        "particles in a full cell (a square or cubic number), or their number along each axis; "
-        "default: 2 along each axis",
-        default=None,
-    )
-
-    source_class: ClassVar[type[Source]]
-
-    @model_validator(mode="after")
-    def _is_a_source(self) -> Inflow:
-        """Rules of the source that span several of its fields."""
-        try:
-            self.source  # noqa: B018
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            raise ValueError(str(first.get("ctx", {}).get("error", first["msg"]))) from None
-        return self
-
-    @cached_property
-    def source(self) -> Source:
-        """The source with its parameters."""
-        return self.source_class.model_validate(
-            {name: getattr(self, name) for name in self.source_class.model_fields}
-        )
-
-    def particles_along_axes(self, dim: int) -> tuple[int, ...]:
-        """Particles along each axis of a full cell."""
-        return particles_along_axes(self.particles_per_cell, dim)
-
-
-class TimeStep(Model):
-    """The step as a fraction of the smallest limit that is not ignored."""
-
-    fraction: float = quantity("1", "fraction of the critical step", gt=0, le=1, default=0.5)
-    ignore: list[Literal["acoustic", "viscous", "advective"]] = Field(
-        default=[], description="limits that the step may exceed; a warning says by how much"
-    )
-
-
-class Scheme(Model):
-    """The numerical method."""
-
-    shape: ShapeFunction
-    order: UpdateOrder
-    velocity: VelocityUpdate
-    volumetric: VolumetricTreatment
-    redistribution: Redistribution
-    refinement: Refinement
-    splitting: bool = Field(
-        default=False,
-        description="true is short for the refinement 'split', false for 'none'",
-    )
-    time_step: TimeStep = Field(default=TimeStep(), description="how long a step is")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _splitting_says_whether(cls, data: Any) -> Any:
-        """``splitting`` tells whether particles are split, ``refinement`` how."""
-        if not isinstance(data, dict) or not isinstance(data.get("splitting", False), bool):
-            return data
-        if "refinement" not in data:
-            return data | ({"refinement": "split"} if data.get("splitting") else {})
-        chosen = data["refinement"]
-        name = chosen.get("name") if isinstance(chosen, dict) else getattr(chosen, "name", chosen)
-        splits = name != "none"
-        if data.get("splitting", splits) != splits:
-            raise ValueError(
-                f"splitting is {str(data['splitting']).lower()} and refinement is "
-                f"{name!r}, which contradict each other; leave out splitting"
-            )
-        return data | {"splitting": splits}
+"""Places along each axis at which an initial field is evaluated to find its largest speed."""
 
 
 class Wall(Model):

@@ -163,8 +163,8 @@ def _check_entry(name: str, entry: Any, source: str) -> None:
     where = f"{source}: {BLOCK}.{name}"
     if not NAME.fullmatch(name) or name in FUNCTIONS:
         raise CaseError(
-            f"{source}: {BLOCK} has one called {shown(name)}; a name must be of small letters, digits and "
-            f"'_', first a letter, and not that of a function ({', '.join(FUNCTIONS)})"
+            f"{source}: {BLOCK} has one called {shown(name)}; a name must be of lower-case letters, digits "
+            f"and '_', begin with a letter, and not be that of a function ({', '.join(FUNCTIONS)})"
         )
     if name in MEASURED:
         raise CaseError(

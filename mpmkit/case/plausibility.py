@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..registry.audit import forces
-from .model import STANDARD_GRAVITY, Case, Material
+from .material import Material
+from .model import STANDARD_GRAVITY, Case
 
 EARTH = 0.1
 """Relative difference from 9.81 m/s² up to which gravity is the earth's."""

@@ -76,7 +76,7 @@ def _check_surface(where: str, wall: Wall, case: Case) -> None:
     plane = _leaves_a_plane_of_symmetry(surface, case)
     if plane is not None:
         raise ValueError(
-            f"{where} moves into the scene from {plane}, a plane of symmetry, which goes on holding the "
+            f"{where} moves into the scene from {plane}, a plane of symmetry, which still holds the "
             f"material there; let grid.faces.{plane} be 'open', or 'slip'"
         )
 

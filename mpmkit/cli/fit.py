@@ -43,7 +43,7 @@ def command(fit: str, how: ManyRuns) -> None:
                 threads=how.threads,
                 workers=how.workers,
                 executor=executor,
-                listen=None if how.quiet else _Counter(),
+                listen=None if how.quiet else _Counter(wanted.budget.runs),
             )
         except KeyboardInterrupt:
             raise Interrupted(
@@ -59,22 +59,29 @@ def command(fit: str, how: ManyRuns) -> None:
             echo(f"{found.path} = {found.value:.4g}{unit}, {interval}")
         else:
             echo(f"{found.path} is not known from these measurements: {interval}")
+    for one in result.comparisons:
+        echo(one.sentence)
     for sentence in result.sentences:
         echo(sentence)
-    echo(f"{result.runs} runs; results in {directory}; open {directory / PAGE} in a browser")
+    echo(f"based on {result.runs} runs; results in {directory}; open {directory / PAGE} in a browser")
 
 
 class _Counter:
-    """A line for each run that has ended."""
+    """A line for each run that has ended.
 
-    def __init__(self) -> None:
-        self._count = 0
+    Args:
+        most: largest number of runs that the budget allows.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._count, self._most = 0, most
 
     def __call__(self, member: Any, outcome: Any) -> None:
         from .display import say
 
         self._count += 1
         seconds = outcome.cost.get("wall_seconds")
-        took = "" if seconds is None else f", {seconds:.1f} s"
+        took = "" if seconds is None else f" in {seconds:.1f} s"
         cell = 1e3 * member.case.grid.cell_size
-        say(f"run {self._count}, cells of {cell:.3g} mm: {outcome.fate}{took}")
+        said = f"{member.name}, cells of {cell:.3g} mm: {outcome.fate}{took}"
+        say(f"fit: run {self._count} of at most {self._most}, {said}")

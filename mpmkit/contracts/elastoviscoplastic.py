@@ -74,8 +74,8 @@ class ElastoviscoplasticLaw(ConstitutiveLaw):
         strain = self._yield_stress / modulus
         if strain > maxwell.SOFT:
             found.append(
-                f"law '{self.name}' is elastic up to a strain of tau0/G = {100 * strain:.3g} %: it wobbles "
-                f"like a jelly before it flows; shear_modulus must be at least "
+                f"law '{self.name}' is elastic up to a strain of tau0/G = {100 * strain:.3g} %: it vibrates "
+                f"elastically before it flows; shear_modulus must be at least "
                 f"{self._yield_stress / maxwell.SOFT:.3g} Pa, or be left out"
             )
         return found

@@ -28,7 +28,7 @@ STIFFNESS = 0.05
 """Least G over ρ c² where a case does not give G: it raises the wave speed, and with it the number of steps,
 by 3 %."""
 YIELD_STRAIN = 0.003
-"""Largest τ0/G where a case does not give G: a body that yields later wobbles like a jelly before."""
+"""Largest τ0/G where a case does not give G; above it, a body vibrates elastically before it flows."""
 FLOW_STRAIN = 0.01
 """Largest elastic strain, by the viscous stress that the scene can drive, where a case does not give G.
 

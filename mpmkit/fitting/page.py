@@ -1,4 +1,4 @@
-"""The page of a fit: the parameters, their limits of knowledge, the figures, and all runs."""
+"""The page of a fit: parameters with intervals, measured and fitted values, figures, and all runs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def write_page(result: FitResult, pictures: list[Path], path: Path) -> None:
 
 
 def _parameters(result: FitResult) -> Section:
-    body = _table(result, result.solution, "Parameters")
+    body = _table(result, result.solution, "Parameters") + _measurements(result)
     for title, sentences in (
         ("What these measurements cannot tell", result.unknown),
         ("What else to measure", [result.advice]),
@@ -55,6 +55,36 @@ def _parameters(result: FitResult) -> Section:
         if sentences:
             body += f"<h3>{escape(title)}</h3>" + bullets(sentences)
     return Section("parameters", "Results", body)
+
+
+def _measurements(result: FitResult) -> str:
+    """A row for each measured number, with its fitted value; a sentence for each curve."""
+    rows = [
+        (
+            one.test,
+            f"{one.variable} ({one.unit})" if one.unit not in ("", "1") else one.variable,
+            f"{float(one.measured.value[0]):.4g}",
+            f"{float(one.fitted[0]):.4g}",
+            f"{float(one.uncertainty[0]):.2g}",
+            f"{float(one.off[0] / one.uncertainty[0]):+.2f}",
+        )
+        for one in result.comparisons
+        if not one.is_curve
+    ]
+    headings = (
+        "test",
+        "measurement",
+        "measured",
+        "fitted",
+        "uncertainty",
+        "(fitted − measured) / uncertainty",
+    )
+    body = (
+        table(headings, rows, "Measured and fitted values; the uncertainty includes the model error")
+        if rows
+        else ""
+    )
+    return body + bullets([f"{one.sentence}." for one in result.comparisons if one.is_curve])
 
 
 def _laws(result: FitResult) -> Section | None:

@@ -13,6 +13,7 @@ import xarray
 
 from ..version import __version__
 from . import further, laws, unknowable
+from .comparison import Comparison, comparisons
 from .dataset import dataset
 from .flow_curve import FlowCurve
 from .model import Fit
@@ -61,6 +62,11 @@ class FitResult:
     def correlation(self) -> np.ndarray:
         """Correlation of the parameters, ``(n, n)``, in the order of ``parameters``."""
         return unknowable.correlation(self.solution)
+
+    @cached_property
+    def comparisons(self) -> list[Comparison]:
+        """Measured and fitted values of each measurement."""
+        return comparisons(self.solution)
 
     @cached_property
     def dataset(self) -> xarray.Dataset:
@@ -135,7 +141,7 @@ class FitResult:
                 test.name: None if error is None else {"part": error.part, "source": error.source}
                 for test, error in zip(solution.runs.tests, solution.errors, strict=True)
             },
-            "measurements": _measurements(solution),
+            "measurements": [one.as_json() for one in self.comparisons],
             "sentences": self.sentences,
             "further": [vars(one) for one in self.further[:5]],
             "laws": [
@@ -179,32 +185,3 @@ def _values(solution: Solution, index: int, interval: Interval) -> tuple[float, 
 
 def _entry(found: Found) -> dict[str, Any]:
     return {key: value for key, value in vars(found).items() if key != "path"}
-
-
-def _measurements(solution: Solution) -> list[dict[str, Any]]:
-    """Measured and fitted value of each measurement; for a curve, the largest and the RMS difference."""
-    found, start, total = [], 0, solution.survey.likelihood.misfit.total
-    for test in solution.runs.tests:
-        for one in test.measured:
-            rows = slice(start, start + len(one.value))
-            start = rows.stop
-            off = solution.fitted[rows] - one.value
-            entry: dict[str, Any] = {
-                "test": test.name,
-                "variable": one.quantity.words,
-                "unit": one.quantity.unit,
-            }
-            if one.is_curve:
-                entry |= {
-                    "rows": len(off),
-                    "largest_difference": float(np.abs(off).max()),
-                    "rms_difference": float(np.sqrt(np.mean(off**2))),
-                }
-            else:
-                entry |= {
-                    "measured": float(one.value[0]),
-                    "uncertainty": float(total[rows][0]),
-                    "fitted": float(solution.fitted[rows][0]),
-                }
-            found.append(entry)
-    return found

@@ -45,14 +45,15 @@ class Stage:
         return {f"{BLOCK}.{name}": entry.unit for name, entry in parameters(self.data).items()}
 
     def member(self, values: Changes) -> Member:
-        """The run with these values of the parameters; its name is the hash of its content.
+        """The run with these values of parameters, and perhaps of ``output``; it is stored under its hash.
 
         Raises:
             CaseError: the values are not valid in the case.
         """
         case = _case(self.where, self.data, self.changes | _of_a_run(self.until) | values)
         content = Member({}, resolved(case), case)
-        name = ", ".join(f"{path} = {_short(value)}" for path, value in values.items())
+        named = {path: value for path, value in values.items() if not path.startswith("output.")}
+        name = ", ".join(f"{path} = {_short(value)}" for path, value in named.items())
         return Member({"run": content.case_digest[:16]}, content.data, case, name=name)
 
 

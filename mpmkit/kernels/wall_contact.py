@@ -42,17 +42,18 @@ def find_free_axes(nodes, at, faces, dim, free):
 
 @function()
 def at_wall_velocities(
-    nodes, at_wall, at, distance, normal, index, weight, free, acting, share, stiffness, velocity, inner
+    nodes, at_wall, at, distance, normal, index, weight, free, acting, share, inverse_mass, velocity, inner
 ):
-    """Velocity of the material at a wall, and its compliance there.
+    """Velocity of the material at a wall, and the inverse of the mass on which an impulse acts there.
 
     Args:
         free: (k,) bits of the axes along which no face of the grid holds the node.
         acting: (k,) which nodes have mass (out).
         share: (k, 1 + 2^dim) weights C of the node and of those around its image (out).
-        stiffness: (k, dim) compliance Σ C² / m along each axis, 1/kg, over the nodes that no face holds, but
-            at least ``HELD`` times the sum over all nodes (out). Without this limit, a free node with a small
-            weight would get a very large velocity where a face holds the other nodes.
+        inverse_mass: (k, dim) Σ C² / m along each axis, 1/kg (out): the velocity at the wall changes by
+            this times the impulse there. The sum is over the nodes that no face holds, but it is at least
+            ``HELD`` times the sum over all nodes. Without this limit, a free node with a small weight would
+            get a very large velocity where a face holds the other nodes.
         velocity, inner: (k, dim) at the wall and at the image (out).
 
     Returns:
@@ -76,7 +77,7 @@ def at_wall_velocities(
         for e in range(dim):
             velocity[count, e] = a * nodes[g, 1 + e]
             inner[count, e] = 0.0 if total > 0.0 else nodes[g, 1 + e]
-            stiffness[count, e] = 0.0
+            inverse_mass[count, e] = 0.0
         own, whole[:] = a, 0.0
         for c in range(corners):
             i = index[k, c]
@@ -94,13 +95,13 @@ def at_wall_velocities(
                     for e in range(dim):
                         whole[e] += (b * part) ** 2 / nodes[i, 0]
                         if free[i] >> e & 1:
-                            stiffness[count, e] += (b * part) ** 2 / nodes[i, 0]
+                            inverse_mass[count, e] += (b * part) ** 2 / nodes[i, 0]
         for e in range(dim):
             whole[e] += own * own / nodes[g, 0]
             if free[g] >> e & 1:
-                stiffness[count, e] += own * own / nodes[g, 0]
-            if stiffness[count, e] < HELD * whole[e]:
-                stiffness[count, e] = HELD * whole[e] if stiffness[count, e] > NONE * whole[e] else 0.0
+                inverse_mass[count, e] += own * own / nodes[g, 0]
+            if inverse_mass[count, e] < HELD * whole[e]:
+                inverse_mass[count, e] = HELD * whole[e] if inverse_mass[count, e] > NONE * whole[e] else 0.0
         acting[count] = k
         count += 1
     return count
@@ -131,7 +132,7 @@ def _velocity(nodes, g, index, share, dim, velocity):
 
 
 @function()
-def give(nodes, acting, at, normal, index, free, share, stiffness, before, after, solved, impulse, held):
+def give(nodes, acting, at, normal, index, free, share, inverse_mass, before, after, solved, impulse, held):
     """Give the nodes the impulses that change the velocities at the wall from ``before`` to ``after``.
 
     Args:
@@ -141,25 +142,25 @@ def give(nodes, acting, at, normal, index, free, share, stiffness, before, after
     dim = normal.shape[1]
     for j in range(len(acting)):
         k = acting[j]
-        resist = along = 0.0
+        normal_inverse_mass = along = 0.0
         held[j] = 0
         for e in range(dim):
-            resist += normal[k, e] ** 2 * stiffness[j, e]
+            normal_inverse_mass += normal[k, e] ** 2 * inverse_mass[j, e]
             along += normal[k, e] * (after[j, e] - before[j, e])
             held[j] |= after[j, e] != before[j, e]
         for e in range(dim):
             across = after[j, e] - before[j, e] - along * normal[k, e]
-            impulse[j, e] = across / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
-            if resist > 0.0:
-                impulse[j, e] += along / resist * normal[k, e]
+            impulse[j, e] = across / inverse_mass[j, e] if inverse_mass[j, e] > 0.0 else 0.0
+            if normal_inverse_mass > 0.0:
+                impulse[j, e] += along / normal_inverse_mass * normal[k, e]
         if held[j]:
             _give(nodes, at[k], index[k], share[j], free, dim, impulse[j], solved)
 
 
 @function()
 def sweep(
-    nodes, acting, at, normal, index, free, share, stiffness, after, whole, pulls, backwards, solved, impulse,
-    held,
+    nodes, acting, at, normal, index, free, share, inverse_mass, after, whole, pulls, backwards, solved,
+    impulse, held,
 ):  # fmt: skip
     """Correct the velocities of the places that the wall holds to ``after`` again, one place after the other.
 
@@ -179,16 +180,18 @@ def sweep(
             continue
         k = acting[j]
         _velocity(nodes, at[k], index[k], share[j], dim, velocity)
-        resist = along = pushed = 0.0
+        normal_inverse_mass = along = pushed = 0.0
         for e in range(dim):
-            resist += normal[k, e] ** 2 * stiffness[j, e]
+            normal_inverse_mass += normal[k, e] ** 2 * inverse_mass[j, e]
             along += normal[k, e] * (after[j, e] - velocity[e])
             pushed += normal[k, e] * impulse[j, e]
         if whole:
             for e in range(dim):
-                step[e] = (after[j, e] - velocity[e]) / stiffness[j, e] if stiffness[j, e] > 0.0 else 0.0
+                step[e] = (
+                    (after[j, e] - velocity[e]) / inverse_mass[j, e] if inverse_mass[j, e] > 0.0 else 0.0
+                )
         else:
-            more = along / resist if resist > 0.0 else 0.0
+            more = along / normal_inverse_mass if normal_inverse_mass > 0.0 else 0.0
             if not pulls:
                 more = max(more, -pushed)
             for e in range(dim):

@@ -18,8 +18,10 @@ COLUMNS = (
     Variable("max_speed", "m/s", "largest speed"),
     Variable("fractured_fraction", "1", "part of the volume in boxes longer than a cell"),
     Variable("density_mean", "1", "nodal density over the material's, mean over the interior"),
-    Variable("density_worst", "1", "nodal density over the material's, where the interior departs most"),
-    Variable("redistribution_energy", "J", "energy put in by the redistribution"),
+    Variable(
+        "density_worst", "1", "nodal density over the material's, at the interior node with the largest error"
+    ),
+    Variable("redistribution_energy", "J", "energy added by the redistribution"),
     Variable("time_step", "s", "time step"),
     Variable("mach_number", "1", "largest speed over the sound speed"),
 )

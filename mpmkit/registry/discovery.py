@@ -7,7 +7,8 @@ import os
 import re
 from collections.abc import Iterator
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, entry_points
+from operator import itemgetter
 from types import ModuleType
 
 import pluggy
@@ -28,21 +29,22 @@ def discover() -> Registry:
     found: list[Registered] = []
     problems: list[Problem] = []
     chosen = _chosen()
-    for entry_point in sorted(entry_points(group=hooks.PROJECT), key=_origin):
-        distribution, name = _origin(entry_point)
+    identity = cache(_identity)  # the entry points of a distribution share it, and its metadata may be long
+    origins = [(*identity(entry.dist), entry.name, entry) for entry in entry_points(group=hooks.PROJECT)]
+    for distribution, version, name, entry_point in sorted(origins, key=itemgetter(0, 2)):
         if chosen is not None and _normal(distribution) not in chosen:
             problems.append(Problem(distribution, name, _why_left_out(), left_out=True))
             continue
         try:
             with settings_and_log_kept():
-                loaded = _load(entry_point)
+                loaded = _load(entry_point, distribution, version)
             for one in loaded:
                 (found if isinstance(one, Registered) else problems).append(one)  # type: ignore[arg-type]
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # whatever the module of a third party raises must not stop the others
             problems.append(Problem(distribution, name, _reason(error)))
-    there = {_normal(_origin(entry_point)[0]) for entry_point in entry_points(group=hooks.PROJECT)}
+    there = {_normal(distribution) for distribution, *_ in origins}
     for name in sorted((chosen or set()) - there - {_normal(hooks.PROJECT)}):
         problems.append(Problem(name, "*", f"is not installed, though {CHOSEN} names it", left_out=True))
     return Registry(found, problems)
@@ -74,8 +76,12 @@ def installed() -> Registry:
     return discover()
 
 
-def _origin(entry_point: EntryPoint) -> tuple[str, str]:
-    return (entry_point.dist.name if entry_point.dist else "unknown", entry_point.name)
+def _identity(distribution: Distribution | None) -> tuple[str, str]:
+    """Name and version."""
+    if distribution is None:
+        return "unknown", "unknown"
+    metadata = distribution.metadata
+    return metadata["Name"], metadata["Version"]
 
 
 def _reason(error: BaseException) -> str:
@@ -83,9 +89,8 @@ def _reason(error: BaseException) -> str:
     return said.removeprefix(f"{type(error).__name__}: ") if type(error) in (TypeError, ValueError) else said
 
 
-def _load(entry_point: EntryPoint) -> list[Registered | Problem]:
-    distribution, entry_name = _origin(entry_point)
-    version = entry_point.dist.version if entry_point.dist else "unknown"
+def _load(entry_point: EntryPoint, distribution: str, version: str) -> list[Registered | Problem]:
+    entry_name = entry_point.name
     loaded: list[Registered | Problem] = []
     for kind, plugin in _provided(entry_point.load()):
         try:

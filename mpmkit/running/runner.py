@@ -225,7 +225,7 @@ def _report(recorder: Recorder, draw: bool, hurry: bool = False) -> None:
             LOGGER.info("%s: %s", "page" if path.suffix == ".html" else "picture", path)
     except KeyboardInterrupt:
         raise Undrawn(
-            f"the run has ended and its results are in '{directory.path}', but it was told to stop before "
+            f"the run has ended and its results are in '{directory.path}', but it was stopped before "
             f"all pictures were drawn; draw them with: mpmkit report {directory.path}"
         ) from None
     except Exception as error:

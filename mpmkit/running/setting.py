@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..case.ending import ending
-from ..case.faces import Stick
-from ..case.model import Case, Face
+from ..case.faces import Face, Stick
+from ..case.model import Case
 from .lift import lift_start
 from .wall_words import wall_sentences
 
@@ -77,5 +77,5 @@ def _in_words(face: Face) -> str:
     if isinstance(face, str):
         return FLOORS[face]
     if isinstance(face, Stick):
-        return FLOORS["stick"] + (", and lets go where it would have to pull" if face.releases else "")
+        return FLOORS["stick"] + (", and releases it where it would have to pull" if face.releases else "")
     return f"friction, with the coefficient {face.coefficient:g}"

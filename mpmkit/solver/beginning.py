@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case.model import Body, Case
+from ..case.bodies import Body
+from ..case.model import Case
 from ..contracts import ElastoviscoplasticLaw, ElastoviscoplasticLawWithState, Kinematics
 from ..errors import CaseError
 from ..registry.audit.initial_fields import LAW

@@ -16,9 +16,8 @@ class Drains:
     """The sinks of a case, which act after every step.
 
     Attributes:
-        emptied: a sentence with the sinks that would remove all of a material, so that the run must end;
-            empty
-        before. The last particles of a material stay, and do not count as removed.
+        emptied: names the sinks that would remove all of a material, so that the run must end; empty before
+            that. The last particles of a material stay, and do not count as removed.
     """
 
     def __init__(self, case: Case, grid: Grid, particles: Particles, ledger: Ledger) -> None:
@@ -29,7 +28,7 @@ class Drains:
         self.emptied = ""
 
     def state(self) -> dict[str, np.ndarray]:
-        """Whether the run can continue: there is material left."""
+        """The sentence ``emptied``."""
         return {"emptied": np.array(self.emptied)}
 
     def restore(self, state: dict[str, np.ndarray]) -> None:

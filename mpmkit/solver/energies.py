@@ -47,7 +47,7 @@ def compressive_energy(p: Particles) -> float:
 
 
 def _require_stored(p: Particles, group: Group, author: Plugin, density: np.ndarray) -> None:
-    """Whether all laws are passive. A law that adds energy is not checked by the energy guard."""
+    """Raise PluginFault if a passive law, or its equation of state, stores a negative or infinite energy."""
     if group.law.passive and not 0 <= density.min() <= density.max() < np.inf:
         part, modulus = group.part, group.density * group.wave_speed**2
         require_energy(author, density, p.number[part], p.volume_ratio[part], p.stress[part], modulus)

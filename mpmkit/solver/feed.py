@@ -1,13 +1,14 @@
-"""A source in a scene: the rows of its column behind the mouth, and their effect on the nodes.
+"""A source in a scene: the column of material behind its mouth, and the effect of the column on the nodes.
 
-The column behind a mouth is a lattice of rows of length h, which moves with the velocity w of the source.
-The rows that can reach a node before the mouth are mapped to the nodes as particles are, so that the box of a
-row counts as far as it is through: without them the last row in would end half a row, on average, before the
-mouth, and its pressure would push it back whenever a row comes in. A row becomes particles when its middle is
-through. It comes in with the density and the pressure of what is there, and the velocity w.
+The column is a lattice of rows of length h, which moves with the velocity w of the source. Rows that can
+reach a node in front of the mouth are mapped to the nodes as particles are, so that the part of a row that
+has passed the mouth counts. Without these rows the material would end half a row, on average, in front of the
+mouth, and its pressure would push it back whenever a row comes in. A row becomes particles when its middle
+passes the mouth. These get the velocity w, and the density and the pressure of the material in front of the
+mouth.
 
-All nodes behind the mouth that the column reaches have the velocity w, as mapped and as solved. So what is
-before it can neither hold the column up nor run away from it without a gap.
+All nodes behind the mouth that the column reaches have the velocity w, after mapping and after the momentum
+equation. So the material in front of the mouth can neither stop the column nor separate from it.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from .stateful import State, restore_plain
 from .tasks import TASKS
 
 AT_MOUTH = 1e-6
-"""A node up to this many cells before the mouth still counts as behind it."""
+"""A node up to this many cells in front of the mouth still counts as behind it."""
 LEAST_MASS = 1e-9
 """Least mass of a node that the column reaches, relative to the largest: smaller ones are rounding."""
 LIFTED = 8
@@ -39,19 +40,19 @@ class Feed:
 
     Attributes:
         rows: number of rows that have come in.
-        ratio: J of the row that comes in next: that of the material before the mouth.
-        mass_in: kg, that has come in.
-        impulse: N s, ``(dim,)``, that nodes behind the mouth and the column have given to the particles.
-        work: J, of it, at the speed of the column.
-        mapped_mass: kg, of the column at the nodes in the last step.
+        ratio: J of the next row to come in: that of the material in front of the mouth.
+        mass_in: mass that has come in, kg.
+        impulse: impulse of the column and of the nodes behind the mouth on the particles, N s, ``(dim,)``.
+        work: work of this impulse at the speed of the column, J.
+        mapped_mass: mass of the column at the nodes in the last step, kg.
     """
 
     def __init__(self, case: Case, name: str, number: int, grid: Grid, window: Window) -> None:
         """
         Args:
             case: a validated case with the source.
-            name: of the source.
-            number: of its particles, see ``Particles.body``.
+            name: name of the source.
+            number: ``Particles.body`` of its particles.
             grid, window: the nodes.
         """
         one, dim = case.sources[name], grid.dim
@@ -65,7 +66,7 @@ class Feed:
         half = self._section.width / 2
         half[self._mouth.axis] = self._length / 2
         self._half = np.minimum(half, grid.cell_size / 2)
-        # Rows whose boxes and whose nodes may reach beyond the mouth.
+        # Number of rows whose weights can reach beyond the mouth.
         self._depth = math.ceil((grid.cell_size + self._half[self._mouth.axis]) / self._length) + 1
         self._normal = np.zeros(dim)
         self._normal[self._mouth.axis] = self._mouth.sign
@@ -133,11 +134,12 @@ class Feed:
     # --- A step
 
     def begin(self, time: float, dt: float, particles: Particles, active: np.ndarray) -> None:
-        """Before a step: the rows behind the mouth, their weights, and the nodes that they reach.
+        """Find the rows behind the mouth, their weights, and the nodes that they reach, before a step.
 
         Args:
-            time, dt: s.
-            particles: of the scene.
+            time: start of the step, s.
+            dt: its length, s.
+            particles: all particles of the scene.
             active: whether each node of the window can be reached by particles.
         """
         self._acts = self._begins <= time < self._ends
@@ -181,7 +183,7 @@ class Feed:
         self._tasks[0, 0, 1:] = n
 
     def _find_nodes(self, time: float, active: np.ndarray) -> None:
-        """Which nodes of the block particles reach, and which of them the column carries along."""
+        """Find the nodes of the block that particles can reach, and which of them move with the column."""
         mapped = self._map(momentum=True, forces=False, acceleration=np.zeros((1, self._grid.dim)))
         number = np.indices(self._shape).reshape(len(self._shape), -1).T + self._first
         inside = number - self._window.lower
@@ -210,7 +212,7 @@ class Feed:
         return nodes[:-LANES]
 
     def map(self, momentum: bool, forces: bool, acceleration: np.ndarray) -> None:
-        """Add the rows to the nodes, after the particles; they feel an acceleration, m/s², ``(1, dim)``."""
+        """Add the rows to the nodes, after the particles, with an acceleration, m/s², ``(1, dim)``."""
         if not self._acts:
             return
         dim = self._grid.dim
@@ -222,7 +224,8 @@ class Feed:
         self._window.nodes[self._index, : 1 + 2 * dim] += mapped[:, : 1 + 2 * dim]
 
     def carry(self, dt: float | None) -> None:
-        """Give the nodes behind the mouth the velocity of the column, as mapped or as solved in a step, s."""
+        """Give the nodes behind the mouth the velocity of the column: after mapping, or after the momentum
+        equation of a step of ``dt`` s."""
         if not self._acts:
             return
         dim, nodes = self._grid.dim, self._window.nodes
@@ -240,25 +243,25 @@ class Feed:
             self._solved = given + moved.sum(axis=0)
 
     def taken_up(self, flip: float) -> None:
-        """Count what the particles take of it, see ``Operations.move_particles``."""
+        """Add up the impulse and the work that reach the particles, see ``Operations.move_particles``."""
         if not self._acts:
             return
         given = self._solved + (1 - flip) * self._mapped
         self.impulse += given
         self.work += float(given @ self._w)
 
-    # --- What comes in
+    # --- New particles
 
     def due(self, time: float, dt: float) -> bool:
-        """Whether a row is through the mouth at a time, s, after a step."""
+        """Whether a row has passed the mouth at a time, s, after a step of ``dt`` s."""
         return time >= self._begins and time - dt < self._ends and self._through(time) > self.rows
 
     def _through(self, time: float) -> int:
-        """Number of rows whose middle is through the mouth."""
+        """Number of rows whose middle has passed the mouth."""
         return math.floor(self.pushed(min(time, self._ends)) / self._length + 0.5 + AT_MOUTH)
 
     def enter(self, time: float, dt: float, particles: Particles) -> None:
-        """Add the rows that are through the mouth at a time, s, after a step."""
+        """Add the rows that have passed the mouth at a time, s, after a step of ``dt`` s."""
         if not self.due(time, dt):
             return
         through = self._through(time)
@@ -273,7 +276,7 @@ class Feed:
         particles.add(self._group, new)
 
     def _ratio_before(self, particles: Particles, time: float) -> float:
-        """Mean J of the material within a cell before the mouth; 1 if there is none."""
+        """Mean J of the material within a cell in front of the mouth; 1 if there is none."""
         part, mouth, dx = particles.groups[self._group].part, self._mouth, self._grid.cell_size
         middle = np.array(mouth.centre) - self._grid.lower + self.place(time)
         apart = particles.position[part] - middle

@@ -32,7 +32,17 @@ GHOST = 1
 
 @dataclass
 class Grid:
-    """Cubic cells of side ``cell_size`` on a box. Node 0 of an axis is on its lower face, node -1 outside."""
+    """Cubic cells on a box. Node 0 of an axis is on its lower face, node -1 outside.
+
+    Attributes:
+        lower: lower corner of the domain, m, ``(dim,)``.
+        cells: number of cells along each axis, ``(dim,)``.
+        cell_size: side of a cell, m.
+        faces: code of each face, lower and upper, see ``kernels.nodes``, ``(dim, 2)``.
+        friction: friction coefficient of each face, ``(dim, 2)``.
+        axes: names of the axes.
+        radial: whether axis 0 is the radius of an axisymmetric scene.
+    """
 
     lower: np.ndarray
     cells: np.ndarray

@@ -1,7 +1,8 @@
 """The ledger of a scene: mass, momentum and energy, and the cause of each change.
 
-The present amount of each is the sum over the causes. The cause "rest" is rounding for mass, the loss by the
-scheme for momentum, and for energy the dissipation by the material plus gains and losses of the scheme.
+The present amount of each is the sum over the causes. The cause "rest" is rounding for mass and momentum (for
+momentum along r: the impulse of the hoop stress), and for energy the dissipation by the material plus gains
+and losses of the scheme.
 """
 
 from __future__ import annotations

@@ -42,6 +42,7 @@ class Measures:
     case: Case
     grid: Grid
     initial_height: float
+    """Height of the top of the material at the start above the grid's lower face, m."""
     axis_position: np.ndarray
     """Horizontal position of the body's axis, m, from the grid's corner."""
     planes: list[float | None]

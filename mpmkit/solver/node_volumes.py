@@ -15,7 +15,7 @@ def node_volumes(window: Window, radial: bool, on_axis: float = math.inf) -> np.
 
     If the boxes of a body tile it, Σ_p V_p N_np = V_n at an inner node for every shape function, and less at
     its surface. Volume on ghosts counts to their images, whose V_n covers both. Only on an axis, V_n depends
-    on the shape function: there it is ``on_axis``, in Δx² turns; default: infinity.
+    on the shape function: there it is 2 π Δx² times ``on_axis``; default: infinity.
     """
     grid = window.grid
     volumes = np.ones(1)

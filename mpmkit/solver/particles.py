@@ -26,6 +26,7 @@ class Group:
     law: ConstitutiveLaw
     equation_of_state: EquationOfState
     density: float
+    """kg/m³, at J = 1"""
     sound_speed: float | None
     """m/s, present sound speed of the equation of state"""
     mach: float | None
@@ -73,36 +74,45 @@ class Particles:
     """State of all particles, n of them on dim axes. Positions are measured from the grid's lower corner."""
 
     number: np.ndarray
-    """(n,) number of each particle; it stays the same when the arrays are sorted."""
+    """(n,) number of each particle; it stays the same when the arrays are sorted"""
     body: np.ndarray
+    """(n,) number of its body in the case; sources are counted after the bodies"""
     position: np.ndarray
+    """(n, dim) m"""
     velocity: np.ndarray
+    """(n, dim) m/s"""
     affine: np.ndarray
-    """(n, dim, dim) affine part of the velocity, 1/s; (n, 0, 0) where the velocity update keeps none"""
+    """(n, dim, dim) affine part of the velocity, 1/s; (n, 0, 0) if the velocity update has none"""
     mass: np.ndarray
+    """(n,) kg"""
     initial_volume: np.ndarray
+    """(n,) V0, m³"""
     volume: np.ndarray
+    """(n,) V = J V0, m³"""
     volume_ratio: np.ndarray
+    """(n,) J"""
     half_size: np.ndarray
-    """(n, dim) half side lengths of the particle domains in the shape function, by its own rule"""
+    """(n, dim) half side lengths of the particle domains of the shape function, m, by its own rule"""
     initial_half_size: np.ndarray | None
-    """(n, dim) their initial values, if they follow from the total deformation"""
+    """(n, dim) their initial values, m, if they follow from the total deformation"""
     least_half_size: np.ndarray | None
-    """(n, dim) their lower limits, if they follow the strain step by step"""
+    """(n, dim) their lower limits, m, if they follow the strain step by step"""
     box: np.ndarray
     """(n, dim) half side lengths of the material's boxes, m, by the normal strain along each axis"""
     velocity_gradient: np.ndarray
+    """(n, 3, 3) 1/s"""
     stress: np.ndarray
-    """(n, 6) the extra stress; the Cauchy stress is this minus the mapped pressure."""
+    """(n, 6) extra stress, Pa; the Cauchy stress is this minus the mapped pressure"""
     pressure: np.ndarray
-    """(n,) of the equation of state at the particle's own volume ratio"""
+    """(n,) pressure of the equation of state at the particle's own volume ratio, Pa"""
     mapped_pressure: np.ndarray
-    """(n,) the pressure after the volumetric treatment; it enters the internal force"""
+    """(n,) pressure after the volumetric treatment, Pa; it enters the internal force"""
     quadrature: np.ndarray
     """(n,) part of the volume of a particle that enters the internal force"""
     expansion: np.ndarray
     """(n,) d ln J per unit of shear that a redistribution has asked for"""
     deformation_gradient: np.ndarray | None
+    """(n, 3, 3) F; None if nothing in the case needs it"""
     portion: np.ndarray
     """(n,) share of an initial particle: 1 at the start, halved by a split, summed by a merge"""
     age: np.ndarray

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..case.model import Scheme
+from ..case.scheme import Scheme
 from ..errors import PluginFault
 from ..kernels import domains, nodes, volumes
 from .averager import Averager

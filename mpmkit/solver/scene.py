@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case.model import Body, Case, Material
+from ..case.bodies import Body
+from ..case.material import Material
+from ..case.model import Case
 from ..case.sound_speed import SoundSpeedMach
 from ..contracts.law import initial_state
 from ..errors import CaseError

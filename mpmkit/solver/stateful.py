@@ -16,7 +16,7 @@ State = dict[str, np.ndarray]
 PLAIN = bool | int | float | str | np.generic | np.ndarray
 """Types of attributes that can be written as an array."""
 NOTHING = np.zeros(0, dtype=bool)
-"""Text that represents ``None`` in an array."""
+"""The array that represents ``None``."""
 
 
 @runtime_checkable

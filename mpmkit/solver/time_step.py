@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ..case.model import Scheme
+from ..case.scheme import Scheme
 from ..contracts import UpdateOrder, VelocityUpdate
 from ..errors import PluginFault
 from ..registry.audit import require_number

@@ -55,7 +55,7 @@ class Touch:
 
 
 def _room_on_axis(shape: ShapeFunction) -> float:
-    """Volume of a node on the axis, in Δx² turns: that of boxes that tile it, 1/6 for cpGIMP."""
+    """Volume of a node on the axis over 2 π Δx², for boxes without gaps: 1/6 for cpGIMP."""
     # Columns of two axes, as in a scene, for which the kernels of the shape function are compiled.
     position, half_size = np.empty((RINGS, 2)), np.full((RINGS, 2), 0.25)
     position[:] = (np.arange(RINGS)[:, None] + 0.5) / 2

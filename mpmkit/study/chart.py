@@ -16,6 +16,8 @@ from .quantities import COSTS
 
 FINEST = "finest"
 """Name of the default reference: the finished member with the most particle-steps."""
+ONE_PROBLEM = "one_problem"
+"""Attribute of a study's dataset: 1 if all members solve the same problem, else 0."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,8 @@ def chart(
         cost: wall_seconds, cpu_seconds, steps, particle_steps or memory_bytes.
 
     Raises:
-        CaseError: there is no such variable, cost or reference, or no member finished.
+        CaseError: there is no such variable, cost or reference, no member finished, or the finest member is
+            no reference for the others because they solve other problems.
     """
     allowed = [str(name) for name, field in dataset.data_vars.items() if field.dtype.kind == "f"]
     if variable not in allowed:
@@ -77,6 +80,12 @@ def chart(
         raise CaseError("no member of the study has finished")
     title, exact, against = "", None, reference
     if reference == FINEST:
+        if not dataset.attrs.get(ONE_PROBLEM, True):
+            raise CaseError(
+                "--reference finest: the members differ in their materials, bodies, boundaries or forces, so "
+                "that a difference from the finest member is not an error; give a CSV file or a number as "
+                "--reference"
+            )
         title, finest = max(finished, key=lambda item: float(item[1].particle_steps))
         exact, against = finest[variable], f"the finest member, {title}"
     elif (value := _number(reference)) is not None:

@@ -12,10 +12,12 @@ from ..case.ending import conditions
 from ..case.model import Case
 from ..output.netcdf import read_dataset
 from ..version import __version__
+from .chart import ONE_PROBLEM
 from .histories import ROWS, number_or_nan, scalars_at
 from .labels import unit_of
 from .members import Member, dimensions, shown
 from .model import Study
+from .problem import solve_one_problem
 from .quantities import COSTS, FIGURES
 from .store import Store
 
@@ -63,6 +65,7 @@ def collect(study: Study, members: list[Member], store: Store) -> xarray.Dataset
         "description": study.description,
         "study": json.dumps(study.model_dump(mode="json")),
         "mpmkit": __version__,
+        ONE_PROBLEM: int(solve_one_problem(members)),
     }
     return dataset
 

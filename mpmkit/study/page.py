@@ -1,4 +1,4 @@
-"""The page of a study: a table of its members, their histories in charts, and error against cost."""
+"""The page of a study: a table of its members, charts of their histories and of error against cost."""
 
 from __future__ import annotations
 
@@ -72,7 +72,8 @@ def _overview(dataset: xarray.Dataset) -> Section:
 
 
 def _cost(dataset: xarray.Dataset) -> Section | None:
-    """Error against cost of the finished members; None if there are no two to compare."""
+    """Error against cost of the finished members; None if there are no two to compare, or if the members
+    solve different problems: the difference between two materials is not an error."""
     for variable in JUDGED:
         try:
             found = chart(dataset, variable)
@@ -98,7 +99,8 @@ def _cost(dataset: xarray.Dataset) -> Section | None:
         }
         body = charts({"cost": f"Error of {variable} against cost"}) + note(
             f"The error is the largest difference between the history and that of {found.against}, relative "
-            "to its largest value. Of the first kind, no other member is cheaper and more accurate."
+            "to its largest value. A member is called cheapest for its error if no other one is both cheaper "
+            "and more accurate."
         )
         return Section("cost", "Error against cost", body, {"charts": {"cost": data}})
     return None

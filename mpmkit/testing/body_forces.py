@@ -12,7 +12,7 @@ from .violation import require, require_all, require_close, require_same
 
 SPAN = 5.0
 """s, the run of the kit."""
-PARTS = 20_000
+PARTS = 2_000
 """Parts of a time in which the acceleration is integrated."""
 ROUNDING = 1e-9
 

@@ -29,6 +29,7 @@ from ..contracts import (
     VolumetricTreatment,
 )
 from ..errors import GuardStop, PluginFault
+from ..spaces import Space
 from . import (
     body_forces,
     body_shapes,
@@ -240,18 +241,7 @@ def equation_of_state_checks(state: EquationOfState) -> list[Check]:
 def surface_checks(surface: Surface, *, size: float = 1.0) -> list[Check]:
     """What every surface must be, in each space that can hold it; see ``surface_tests``."""
     homes = surfaces.at_home(surface)
-    return _of(
-        "surface",
-        surface,
-        [
-            ("problem", partial(surfaces.problem, surface)),
-            *(
-                (f"{check.__name__} {space.name}", partial(check, surface, space, size))
-                for check in ON_SURFACES
-                for space in homes
-            ),
-        ],
-    )
+    return _in_spaces("surface", surface, surfaces.problem, ON_SURFACES, homes, size)
 
 
 def contact_checks(contact: Contact) -> list[Check]:
@@ -262,35 +252,12 @@ def contact_checks(contact: Contact) -> list[Check]:
 def body_force_checks(force: BodyForce, *, size: float = 1.0) -> list[Check]:
     """What every body force must do, in each space that can have it; see ``body_force_tests``."""
     homes = body_forces.at_home(force)
-    return _of(
-        "body_force",
-        force,
-        [
-            ("home", partial(body_forces.home, force)),
-            *(
-                (f"{check.__name__} {space.name}", partial(check, force, space, size))
-                for check in ON_BODY_FORCES
-                for space in homes
-            ),
-        ],
-    )
+    return _in_spaces("body_force", force, body_forces.home, ON_BODY_FORCES, homes, size)
 
 
 def body_shape_checks(shape: BodyShape) -> list[Check]:
     """What every body shape must be, in each space that can hold it; see ``body_shape_tests``."""
-    homes = body_shapes.at_home(shape)
-    return _of(
-        "body_shape",
-        shape,
-        [
-            ("home", partial(body_shapes.home, shape)),
-            *(
-                (f"{check.__name__} {space.name}", partial(check, shape, space))
-                for check in ON_BODY_SHAPES
-                for space in homes
-            ),
-        ],
-    )
+    return _in_spaces("body_shape", shape, body_shapes.home, ON_BODY_SHAPES, body_shapes.at_home(shape))
 
 
 def initial_field_checks(field: InitialField, *, size: float = 1.0) -> list[Check]:
@@ -301,19 +268,7 @@ def initial_field_checks(field: InitialField, *, size: float = 1.0) -> list[Chec
 
 def sink_checks(sink: Sink, *, size: float = 1.0) -> list[Check]:
     """What every sink must do, in each space that can have it; see ``sink_tests``."""
-    homes = sinks.at_home(sink)
-    return _of(
-        "sink",
-        sink,
-        [
-            ("home", partial(sinks.home, sink)),
-            *(
-                (f"{check.__name__} {space.name}", partial(check, sink, space, size))
-                for check in ON_SINKS
-                for space in homes
-            ),
-        ],
-    )
+    return _in_spaces("sink", sink, sinks.home, ON_SINKS, sinks.at_home(sink), size)
 
 
 def source_checks(source: Source, *, size: float = 1.0) -> list[Check]:
@@ -333,18 +288,7 @@ def source_checks(source: Source, *, size: float = 1.0) -> list[Check]:
 def diagnostic_checks(diagnostic: Diagnostic) -> list[Check]:
     """What every diagnostic must do, in each space in which it can be measured."""
     homes = measured.at_home(diagnostic)
-    return _of(
-        "diagnostic",
-        diagnostic,
-        [
-            ("home", partial(measured.home, diagnostic)),
-            *(
-                (f"{check.__name__} {space.name}", partial(check, diagnostic, space))
-                for check in ON_DIAGNOSTICS
-                for space in homes
-            ),
-        ],
-    )
+    return _in_spaces("diagnostic", diagnostic, measured.home, ON_DIAGNOSTICS, homes)
 
 
 def particle_field_checks(field: ParticleField) -> list[Check]:
@@ -358,6 +302,23 @@ def _in_each_space(
     return [
         (f"{check.__name__} {space}", partial(check, space, subject)) for check in checks for space in SPACES
     ]
+
+
+def _in_spaces(
+    kind: str,
+    plugin: Plugin,
+    home: Callable[[Any], None],
+    checks: Iterable[Callable[..., None]],
+    spaces: Iterable[Space],
+    *size: float,
+) -> list[Check]:
+    """The check that some space can have the plug-in, then the other checks in each of these spaces."""
+    in_spaces = [
+        (f"{check.__name__} {space.name}", partial(check, plugin, space, *size))
+        for check in checks
+        for space in spaces
+    ]
+    return _of(kind, plugin, [(home.__name__, partial(home, plugin)), *in_spaces])
 
 
 def _in_place_first(

@@ -213,8 +213,8 @@ def sink_tests(sink: Sink, *, size: float = 1.0) -> Test:
 def source_tests(source: Source, *, size: float = 1.0) -> Test:
     """A test function, as that of ``law_tests``, for a source, with its mouth in each space that can have it.
 
-    Its column never moves back, is no faster than it says, and is where it is at a time whatever it was asked
-    before.
+    The column of the source never moves back and is not faster than the speed that the source states. Its
+    position depends on the time alone, and not on earlier calls.
 
     Args:
         source: with parameters.

@@ -84,7 +84,7 @@ def even_particles(space: str, author: Redistribution) -> None:
 
 
 def rest(space: str, author: Redistribution) -> None:
-    """Without shear, at rest or as a body turns, nothing moves, in whatever disorder it lies."""
+    """Without shear, at rest or in rigid rotation, no particle is moved, even from a disordered place."""
     simulation = heap(space, author)
     disorder(simulation)
     p = simulation.particles
@@ -104,7 +104,7 @@ def _require_unmoved(simulation: Simulation, position: np.ndarray, ratio: np.nda
 
 
 def mass_and_momentum(space: str, author: Redistribution) -> None:
-    """Mass and momentum of disordered particles are kept, and whatever else is not its to change."""
+    """Mass and momentum are kept, and so are all fields that a redistribution may not change."""
     simulation = heap(space, author)
     disorder(simulation)
     p = simulation.particles

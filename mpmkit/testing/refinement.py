@@ -61,7 +61,7 @@ def as_they_begin(space: str, author: Refinement) -> None:
 
 
 def keeps_what_there_is(space: str, author: Refinement) -> None:
-    """Mass, volume, momentum and centre of mass are kept, whatever is split or merged."""
+    """Splits and merges keep mass, volume, momentum and centre of mass."""
     simulation = heap(space, author)
     for seed in range(3):
         draw_out(simulation, seed)

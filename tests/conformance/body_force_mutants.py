@@ -1,4 +1,4 @@
-"""A body force with nothing wrong with it, and some with one fault each."""
+"""A correct body force, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import BodyForce
 
 
 class Pulse(Sound, BodyForce):
-    """A pull along the last axis that decays, and is 2 m/s² in all until 0.3 s."""
+    """Correct: an acceleration along the last axis that decays until 0.3 s."""
 
     uniform = True
 
@@ -41,7 +41,7 @@ class Infinite(Pulse):
 
 
 class Moves(Pulse):
-    """Moves the places that it is asked for."""
+    """Fault: changes the positions that it gets."""
 
     def acceleration(self, x, v, t):
         x += 1.0
@@ -61,14 +61,14 @@ class KnowsTheOthers(Pulse):
 
 
 class Varies(Pulse):
-    """Says that it is uniform."""
+    """Fault: declares itself uniform, but depends on the position."""
 
     def acceleration(self, x, v, t):
         return super().acceleration(x, v, t) * x
 
 
 class Drags(Pulse):
-    """Says that it does not depend on the velocity."""
+    """Fault: depends on the velocity without declaring it."""
 
     uniform = False
 
@@ -77,7 +77,7 @@ class Drags(Pulse):
 
 
 class Changes(Pulse):
-    """Says that it is constant."""
+    """Fault: declares itself constant, but changes with time."""
 
     constant = True
 

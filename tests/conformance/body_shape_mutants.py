@@ -1,4 +1,4 @@
-"""A body shape with nothing wrong with it, and some with one fault each."""
+"""A correct body shape, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import BodyShape
 
 
 class Ball(Sound, BodyShape):
-    """A ball of radius 0.1 m around the origin."""
+    """Correct: a ball of radius 0.1 m around the origin."""
 
     def bounds(self, space):
         lower, upper = np.full(space.dim, -0.1), np.full(space.dim, 0.1)

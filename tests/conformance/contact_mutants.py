@@ -1,4 +1,4 @@
-"""A contact with nothing wrong with it, and some with one fault each."""
+"""A correct contact, and mutants of it with one fault each."""
 
 from typing import ClassVar
 
@@ -9,7 +9,7 @@ from mpmkit.contracts import Contact, StateVariable
 
 
 class Sticky(Sound, Contact):
-    """What approaches is stopped, and loses half of its slip; how fast it came is remembered."""
+    """Correct: stops approaching material, halves its slip velocity, and remembers the approach velocity."""
 
     memory = {"impact": StateVariable("m/s", "speed of the last impact")}
 
@@ -36,7 +36,7 @@ class Pulls(Sticky):
 
 
 class Bounces(Sticky):
-    """With more than it came with."""
+    """Fault: material leaves faster than it approached."""
 
     def solved(self, nodes, dt):
         away, _ = nodes.slip()
@@ -45,7 +45,7 @@ class Bounces(Sticky):
 
 
 class Downwards(Sticky):
-    """The last axis is special to it."""
+    """Fault: treats the last axis in a special way."""
 
     def solved(self, nodes, dt):
         lost = np.zeros_like(nodes.velocity)
@@ -55,7 +55,7 @@ class Downwards(Sticky):
 
 
 class AtRestOnly(Sticky):
-    """It forgets that walls move."""
+    """Fault: ignores the velocity of the wall."""
 
     def solved(self, nodes, dt):
         away = (nodes.velocity * nodes.normal).sum(axis=1)
@@ -64,7 +64,7 @@ class AtRestOnly(Sticky):
 
 
 class Drives(Sticky):
-    """The drag of half of the slip, with the wrong sign."""
+    """Fault: friction with the wrong sign."""
 
     def solved(self, nodes, dt):
         away, slip = nodes.slip()

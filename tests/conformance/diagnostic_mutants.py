@@ -1,4 +1,4 @@
-"""A diagnostic with nothing wrong with it, and some with one fault each."""
+"""A correct diagnostic, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Column, Diagnostic
 
 
 class Fastest(Sound, Diagnostic):
-    """The largest speed."""
+    """Correct: the largest speed."""
 
     def columns(self, space):
         return [Column("speed", "m/s", "largest speed")]
@@ -52,7 +52,7 @@ class AnArray(Fastest):
 
 
 class StopsIt(Fastest):
-    """Writes to the scene that it measures."""
+    """Fault: writes to the scene."""
 
     def measure(self, scene):
         scene.velocity[:] = 0.0
@@ -65,7 +65,7 @@ class ByChance(Fastest):
 
 
 class OfTheFirst(Fastest):
-    """Of the particle that lies first in memory."""
+    """Fault: measures the first particle in memory, so that the order matters."""
 
     def measure(self, scene):
         return {"speed": float(np.linalg.norm(scene.velocity[0]))}

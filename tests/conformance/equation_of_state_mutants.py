@@ -1,4 +1,4 @@
-"""Equations of state with nothing wrong with them, and some with one fault each."""
+"""A correct equation of state, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import EquationOfState
 
 
 class InLogarithm(Sound, EquationOfState):
-    """p = -ρ c² ln J, e = ρ c² (J ln J - J + 1), which has nothing wrong with it."""
+    """Correct: p = -ρ c² ln J, e = ρ c² (J ln J - J + 1)."""
 
     def pressure(self, volume_ratio, density, sound_speed):
         return -density * sound_speed**2 * np.log(volume_ratio)
@@ -38,7 +38,7 @@ class NegativeEnergy(InLogarithm):
 
 
 class Pressed(InLogarithm):
-    """Has a pressure at its initial volume."""
+    """Fault: a pressure at the initial volume."""
 
     def pressure(self, volume_ratio, density, sound_speed):
         return super().pressure(volume_ratio, density, sound_speed) + 1e3

@@ -1,4 +1,4 @@
-"""An initial field with nothing wrong with it, and some with one fault each."""
+"""A correct initial field, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import InitialField
 
 
 class Rising(Sound, InitialField):
-    """A velocity that grows upwards."""
+    """Correct: a velocity that increases with height."""
 
     def problem(self, space, field, shape):
         return None if field == "velocity" else "it gives a velocity"

@@ -7,7 +7,7 @@ from mpmkit.contracts import ConstitutiveLaw, GeneralisedNewtonianLaw
 
 
 class NormalComponentsOnly(Plastic):
-    """Yield, and flow with it, on the normal components alone: two published codes have it so."""
+    """Fault: yield and flow use the normal components only. Two published codes have this fault."""
 
     def update_stress(self, kinematics, state, dt, stress):
         super().update_stress(kinematics, state, dt, stress)
@@ -23,7 +23,7 @@ class TwiceTheStress(Oil):
 
 
 class TwiceTheFlow(Plastic):
-    """A return mapping that is not that of its own flow curve."""
+    """Fault: the return mapping belongs to another flow curve."""
 
     def relaxed_stress(self, trial, stiffness):
         return np.minimum(trial, 20.0) + 10.0 / (10.0 + stiffness) * np.maximum(trial - 20.0, 0.0)
@@ -35,21 +35,21 @@ class WrongSign(Oil):
 
 
 class WrongSignOfOneShear(Oil):
-    """A sign that shows in the shear stress of one plane only."""
+    """Fault: a wrong sign in the shear stress of one plane."""
 
     def stress_of(self, L):
         return super().stress_of(L) * np.array([1, 1, 1, 1, 1, -1])
 
 
 class GradientNotTransposed(Oil):
-    """2 mu L for mu (L + Lᵀ)."""
+    """Fault: 2 mu L instead of mu (L + Lᵀ)."""
 
     def stress_of(self, L):
         return voigt(10.0 * deviator(L))
 
 
 class ShearStressesInAnotherOrder(Oil):
-    """xy, yz, xz for yz, xz, xy."""
+    """Fault: shear components in the order xy, yz, xz instead of yz, xz, xy."""
 
     def stress_of(self, L):
         return super().stress_of(L)[:, [0, 1, 2, 5, 3, 4]]
@@ -71,7 +71,7 @@ class NotTurned(Spring):
 
 
 class WholeTensor(Spring):
-    """Without the deviator it resists a change of volume, as the equation of state does already."""
+    """Fault: uses D instead of its deviator, and so resists a change of volume."""
 
     def update_stress(self, kinematics, state, dt, stress):
         L = kinematics.velocity_gradient
@@ -79,7 +79,7 @@ class WholeTensor(Spring):
 
 
 class SlowWave(Spring):
-    """Ten times as stiff as it says."""
+    """Fault: ten times as stiff as its wave speed says."""
 
     modulus: float = 1e7
 
@@ -93,14 +93,14 @@ class ThinnerThanItIs(Oil):
 
 
 class EnergyOfNothing(Oil):
-    """Energy that it does not have."""
+    """Fault: a fluid with an elastic energy."""
 
     def strain_energy(self, kinematics, state, stress):
         return 1.0
 
 
 class NothingAtRest(Oil):
-    """0/0 where nothing moves."""
+    """Fault: 0/0 at rest."""
 
     def stress_of(self, L):
         D = deviator(L + transposed(L)) / 2
@@ -110,7 +110,7 @@ class NothingAtRest(Oil):
 
 
 class Overflows(Oil):
-    """Beyond any number at 1e6 /s."""
+    """Fault: overflows at 1e6 /s."""
 
     def stress_of(self, L):
         with np.errstate(over="ignore", invalid="ignore"):
@@ -118,7 +118,7 @@ class Overflows(Oil):
 
 
 class KnowsTheOthers(Oil):
-    """The viscosity of one particle depends on the rates of all."""
+    """Fault: the viscosity of a particle depends on the rates of all particles."""
 
     def stress_of(self, L):
         return super().stress_of(L) * (1 + 1e-3 * np.mean(np.abs(L)))
@@ -128,7 +128,7 @@ HIDDEN = np.zeros(1000)
 
 
 class HiddenState(Ageing):
-    """A memory of its own, by the place that a particle has in its arrays."""
+    """Fault: keeps a memory of its own by the index of a particle, which changes."""
 
     def remember(self, state, strain):
         HIDDEN[: len(strain)] += strain
@@ -138,7 +138,7 @@ class HiddenState(Ageing):
 
 
 class UndeclaredState(Ageing):
-    """Adds what it has not declared."""
+    """Fault: adds a state variable that it has not declared."""
 
     def remember(self, state, strain):
         super().remember(state, strain)
@@ -152,7 +152,7 @@ class ChangesTheKinematics(Oil):
 
 
 class RightForLeft(NeoHooke):
-    """FᵀF for F Fᵀ."""
+    """Fault: FᵀF instead of F Fᵀ."""
 
     def left(self, F):
         return transposed(F) @ F
@@ -178,14 +178,14 @@ class NoCitation(Oil):
 
 
 class FlowCurveOff(Sound, GeneralisedNewtonianLaw):
-    """tau0 (1 - exp(-m γ̇)) + 5 γ̇ with half the yield stress."""
+    """Fault: the flow curve has half of the yield stress of the law."""
 
     def apparent_viscosity(self, shear_rate):
         return -10.0 * np.expm1(-1e3 * shear_rate) / shear_rate + 5.0
 
 
 class NewStress(Oil):
-    """Gives the name of its stress to another array."""
+    """Fault: assigns a new array to the name of its stress instead of writing in place."""
 
     def update_stress(self, kinematics, state, dt, stress):
         stress = self.stress_of(kinematics.velocity_gradient)  # noqa: F841

@@ -1,4 +1,4 @@
-"""An update order with nothing wrong with it, and some with one fault each."""
+"""A correct update order, and mutants of it with one fault each."""
 
 from sound_laws import Sound
 
@@ -6,7 +6,7 @@ from mpmkit.contracts import UpdateOrder
 
 
 class Modified(Sound, UpdateOrder):
-    """MUSL, which has nothing wrong with it."""
+    """Correct: MUSL."""
 
     def step(self, ops, dt):
         ops.map_to_grid()

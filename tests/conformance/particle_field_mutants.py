@@ -1,4 +1,4 @@
-"""A particle field with nothing wrong with it, and some with one fault each."""
+"""A correct particle field, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import ParticleField
 
 
 class Momentum(Sound, ParticleField):
-    """m |v|"""
+    """Correct: m |v|."""
 
     unit, long_name = "kg m/s", "momentum"
 
@@ -44,14 +44,14 @@ class Infinite(Momentum):
 
 
 class KnowsTheOthers(Momentum):
-    """Of the particle before it in memory."""
+    """Fault: takes the value of the previous particle in memory."""
 
     def values(self, scene):
         return np.roll(super().values(scene), 1)
 
 
 class Heavier(Momentum):
-    """Writes to the scene."""
+    """Fault: writes to the scene."""
 
     def values(self, scene):
         scene.mass[:] *= 2

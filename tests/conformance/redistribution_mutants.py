@@ -1,4 +1,4 @@
-"""A redistribution with nothing wrong with it, and some with one fault each."""
+"""A correct redistribution, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Redistribution
 
 
 class Spread(Sound, Redistribution):
-    """δx = -γ̇ dt h² ∇κ, which has nothing wrong with it."""
+    """Correct: δx = -γ̇ dt h² ∇κ."""
 
     def is_due(self, shear):
         return shear > 0.05
@@ -22,14 +22,14 @@ class Spread(Sound, Redistribution):
 
 
 class Attracts(Spread):
-    """Towards where there are many."""
+    """Fault: moves particles to where there are many."""
 
     def displacement(self, ops, time):
         return -3 * super().displacement(ops, time)
 
 
 class Settles(Spread):
-    """Downwards, with the shear."""
+    """Fault: moves particles downwards."""
 
     def displacement(self, ops, time):
         found = np.zeros_like(super().displacement(ops, time))
@@ -38,7 +38,7 @@ class Settles(Spread):
 
 
 class NeverRests(Spread):
-    """At a rate of its own, whatever the shear rate is."""
+    """Fault: acts at a fixed rate, also without shear."""
 
     def displacement(self, ops, time):
         return -(time * ops.places.spacing**2) * ops.places.slope_at_particles(ops.places.crowding())
@@ -55,21 +55,21 @@ class Perhaps(Spread):
 
 
 class Swells(Spread):
-    """A thousandth of each volume more, every time."""
+    """Fault: increases every volume by a thousandth each time."""
 
     def redistribute(self, ops, time):
         ops.scale_volume_ratio(np.full(len(ops.shear_rate()), 1.001))
 
 
 class Heavier(Spread):
-    """All of it counts a tenth more."""
+    """Fault: weights of 1.1 in the internal force."""
 
     def redistribute(self, ops, time):
         ops.weigh(np.full(len(ops.shear_rate()), 1.1))
 
 
 class ByChance(Spread):
-    """A random walk."""
+    """Fault: moves particles at random, so that runs cannot be repeated."""
 
     def displacement(self, ops, time):
         found = super().displacement(ops, time)

@@ -1,4 +1,4 @@
-"""A refinement with nothing wrong with it, and some with one fault each."""
+"""A correct refinement, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Refinement
 
 
 class Halves(Sound, Refinement):
-    """A box that is longer than a cell is halved, down to a quarter of a particle."""
+    """Correct: halves boxes longer than a cell, down to a quarter of a particle."""
 
     def refine(self, ops):
         for axis in range(ops.dim):
@@ -18,7 +18,7 @@ class Halves(Sound, Refinement):
 
 
 class Joins(Halves):
-    """And pieces are merged again."""
+    """Correct: also merges pieces again."""
 
     def refine(self, ops):
         super().refine(ops)
@@ -29,21 +29,21 @@ class Joins(Halves):
 
 
 class Endless(Halves):
-    """However small the pieces are."""
+    """Fault: splits pieces of any size without end."""
 
     def chosen(self, ops, axis):
         return ops.sides()[:, axis] > 1
 
 
 class Everything(Halves):
-    """Long or not."""
+    """Fault: splits boxes of any length."""
 
     def chosen(self, ops, axis):
         return ops.portion() >= 0.5
 
 
 class CutsAll(Halves):
-    """To half of a cell and less, by doing so to what is not long."""
+    """Fault: splits boxes that are shorter than a cell."""
 
     def refine(self, ops):
         ops.split(ops.sides()[:, 0] > 0.4, 0)

@@ -1,4 +1,4 @@
-"""Hat functions and splines with nothing wrong with them, and with one fault each."""
+"""Correct hat functions and splines, and mutants of them with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import ShapeFunction
 
 
 class Hats(Sound, ShapeFunction):
-    """Linear ones, which have nothing wrong with them."""
+    """Correct: linear hat functions."""
 
     support = 2
     smooth = False
@@ -29,7 +29,7 @@ class Hats(Sound, ShapeFunction):
 
 
 class Splines(Hats):
-    """Quadratic ones, which have nothing wrong with them either."""
+    """Correct: quadratic B-splines."""
 
     support = 3
     smooth = True
@@ -43,7 +43,7 @@ class Splines(Hats):
 
 
 class WeightByDifference(Splines):
-    """What the last node gets is what the others leave: rounding, where that is little."""
+    """Fault: the last weight is 1 minus the others, and so has their rounding error."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base, weight, gradient)
@@ -51,7 +51,7 @@ class WeightByDifference(Splines):
 
 
 class GradientOffByACell(Hats):
-    """Those of the next cell's nodes."""
+    """Fault: the gradients of the nodes of the next cell."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base, weight, gradient)
@@ -71,7 +71,7 @@ class TwiceTheGradient(Hats):
 
 
 class GradientPerCell(Hats):
-    """Not divided by the cell size."""
+    """Fault: gradients not divided by the cell size."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base, weight, gradient)
@@ -91,7 +91,7 @@ class TooLight(Hats):
 
 
 class NearestNode(Hats):
-    """The nearest node has all the weight; a gradient is said all the same."""
+    """Fault: all weight on the nearest node, with a gradient that does not fit."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base, weight, gradient)
@@ -108,7 +108,7 @@ class FirstAxisOnly(Hats):
 
 
 class TooFar(Hats):
-    """Four nodes, of which the first is two cells below the particle's own."""
+    """Fault: the first of four nodes is two cells below the cell of the particle."""
 
     support = 4
 
@@ -119,7 +119,7 @@ class TooFar(Hats):
 
 
 class LocalLattice(Hats):
-    """Counts cells from the lowest particle of the batch."""
+    """Fault: counts cells from the lowest particle of the batch."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position - position.min(), half_size, cell_size, base, weight, gradient)
@@ -132,7 +132,7 @@ class NoHoop(Hats):
 
 
 class HoopOfTheCell(Hats):
-    """N over the cell size, not over r."""
+    """Fault: the hoop term is N over the cell size instead of N/r."""
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
         self.fill_axis(radius, half_size, cell_size, base, weight, gradient)
@@ -140,14 +140,14 @@ class HoopOfTheCell(Hats):
 
 
 class RadialTablesOfNobody(Hats):
-    """Does not write the radial tables, so that they keep old values."""
+    """Fault: does not write the radial tables, so that they keep old values."""
 
     def fill_radial(self, radius, half_size, cell_size, base, weight, gradient, hoop):
         hoop[:] = 1 / radius[:, None]
 
 
 class Lopsided(Hats):
-    """A weight that is curved, and so not its own mirror image."""
+    """Fault: weights that are not symmetric under reflection."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base, weight, gradient)
@@ -162,7 +162,7 @@ class UnknownDomain(Hats):
 
 
 class NewBase(Hats):
-    """Gives the name of its base to another array."""
+    """Fault: assigns a new array to the name of its base instead of writing in place."""
 
     def fill(self, position, half_size, cell_size, base, weight, gradient):
         super().fill(position, half_size, cell_size, base.copy(), weight, gradient)

@@ -1,4 +1,4 @@
-"""A sink with nothing wrong with it, and some with one fault each."""
+"""A correct sink, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Sink
 
 
 class Below(Sound, Sink):
-    """What is below 0.1 m."""
+    """Correct: takes what is below 0.1 m."""
 
     def takes(self, x, t, domain):
         return x[:, -1] < 0.1
@@ -44,14 +44,14 @@ class Everything(Below):
 
 
 class Lowest(Below):
-    """Those that are lower than most of the others."""
+    """Fault: takes the particles below the median, so that the others matter."""
 
     def takes(self, x, t, domain):
         return x[:, -1] < np.median(x[:, -1])
 
 
 class Pulls(Below):
-    """Moves what it is asked for."""
+    """Fault: changes the positions that it gets."""
 
     def takes(self, x, t, domain):
         x[:, -1] -= 0.1

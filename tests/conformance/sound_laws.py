@@ -1,4 +1,4 @@
-"""Laws in plain NumPy with nothing wrong with them, for mutants to be made of."""
+"""Correct laws in plain NumPy; mutants are derived from them."""
 
 import math
 
@@ -26,13 +26,13 @@ def deviator(tensors):
 
 
 class Sound:
-    """What every descriptor says."""
+    """The common descriptor."""
 
     name, citation, api_version = "mutant", "none", 2
 
 
 class Oil(Sound, ConstitutiveLaw):
-    """A Newtonian fluid of 5 Pa s, which has nothing wrong with it."""
+    """A Newtonian fluid of 5 Pa s."""
 
     def update_stress(self, kinematics, state, dt, stress):
         stress[:] = self.stress_of(kinematics.velocity_gradient)
@@ -45,14 +45,14 @@ class Oil(Sound, ConstitutiveLaw):
 
 
 class Plastic(Sound, ElastoviscoplasticLaw):
-    """Bingham's, 20 Pa and 5 Pa s, which has nothing wrong with it."""
+    """A Bingham fluid, 20 Pa and 5 Pa s."""
 
     def flow_curve(self, shear_rate):
         return 20.0 + 5.0 * shear_rate
 
 
 class Spring(Sound, ConstitutiveLaw):
-    """Elastic, of 1 kPa, by a rate that turns with the material; nothing wrong with it."""
+    """An elastic material of 1 kPa with an objective stress rate."""
 
     modulus: float = 1e3
 
@@ -74,7 +74,7 @@ class Spring(Sound, ConstitutiveLaw):
 
 
 class Ageing(Sound, ConstitutiveLaw):
-    """A fluid of 5 Pa s that stiffens by as much for every unit of strain, which it has declared."""
+    """A fluid whose viscosity grows by 5 Pa s per unit of strain, with a declared state variable."""
 
     state = {"strain": StateVariable("1", "shear strain that it has seen")}
 
@@ -94,7 +94,7 @@ class Ageing(Sound, ConstitutiveLaw):
 
 
 class NeoHooke(Sound, ConstitutiveLaw):
-    """G/2 (tr(FᵀF) - 3) - G ln J + lambda/2 (ln J)², both 1 kPa; nothing wrong with it."""
+    """Neo-Hookean, G/2 (tr(FᵀF) - 3) - G ln J + lambda/2 (ln J)², both moduli 1 kPa."""
 
     uses_equation_of_state = False
     needs_deformation_gradient = True

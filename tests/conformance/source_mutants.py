@@ -1,4 +1,4 @@
-"""A source with nothing wrong with it, and some with one fault each."""
+"""A correct source, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Mouth, Source
 
 
 class Tap(Sound, Source):
-    """A section in the middle of the scene that opens slowly, from 1 s to 5 s."""
+    """Correct: a section in the middle of the scene that opens slowly, from 1 s to 5 s."""
 
     def mouth(self, space, domain):
         half = [0.1] * (space.dim - 1) + [0.0]
@@ -92,7 +92,7 @@ class Slower(Tap):
 
 
 class Runs(Tap):
-    """Its mouth moves fast, and ``fastest`` does not know it."""
+    """Fault: the mouth moves faster than ``fastest`` says."""
 
     def moved(self, t):
         return np.array([5.0 * t, 0.0])

@@ -1,4 +1,4 @@
-"""A surface with nothing wrong with it, and some with one fault each."""
+"""A correct surface, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,7 +7,7 @@ from mpmkit.contracts import Surface
 
 
 class Rising(Sound, Surface):
-    """A sphere of 0.4 m, in 2-D and 3-D, that rises and sinks by 0.1 m."""
+    """Correct: a sphere of 0.4 m, in 2-D and 3-D, that oscillates by 0.1 m."""
 
     def distance(self, x, t):
         offset = x - self.centre(x.shape[1], t)
@@ -40,7 +40,7 @@ class NotOfLengthOne(Rising):
 
 
 class Squared(Rising):
-    """A level set that is no distance."""
+    """Fault: a level set that is not a distance."""
 
     def distance(self, x, t):
         distance, normal = super().distance(x, t)
@@ -54,7 +54,7 @@ class HalfTheDistance(Rising):
 
 
 class AtRest(Rising):
-    """It moves, and says that it does not."""
+    """Fault: moves, but gives the velocity 0."""
 
     def velocity(self, x, t):
         return np.zeros_like(x)

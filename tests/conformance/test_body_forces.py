@@ -1,4 +1,4 @@
-"""Every registered body force, with parameters, goes through the kit that third parties use."""
+"""Every registered body force, with parameters, passes the conformance kit for third parties."""
 
 import pytest
 

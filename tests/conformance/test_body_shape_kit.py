@@ -1,4 +1,4 @@
-"""Every registered body shape, with parameters, goes through the kit that third parties use."""
+"""Every registered body shape, with parameters, passes the conformance kit for third parties."""
 
 import pytest
 

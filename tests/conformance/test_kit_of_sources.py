@@ -1,4 +1,4 @@
-"""Every registered source, with parameters, goes through the kit that third parties use."""
+"""Every registered source, with parameters, passes the conformance kit for third parties."""
 
 import pytest
 

@@ -1,9 +1,8 @@
-"""What every registered law must do, and what the built-in ones must do besides.
+"""Requirements on every registered law, and further ones on the built-in laws.
 
-Every law goes through the kit that third parties test theirs with. Its parameters come from a table by the
-names of its fields; for a name that is not there, its default, or some value that its constraints allow. So a
-law that is registered tomorrow is tested without a word here, and gets a line in ``PARAMETERS`` if its names
-are its own.
+Every law passes the conformance kit for third parties. Its parameters come from a table, by the names of its
+fields. For a name that is not in the table, the default is used, or a value within its constraints. So a new
+law is tested without a change here; it needs a line in ``PARAMETERS`` only if its parameters have new names.
 """
 
 from __future__ import annotations
@@ -153,7 +152,7 @@ def test_bingham_without_yield_stress_is_newtonian():
 
 @pytest.mark.parametrize("name", ["bingham", "herschel-bulkley"])
 def test_regularised_law_tends_to_the_exact_one(name):
-    """What it lacks of tau0 is tau0 exp(-m γ̇): it shrinks exponentially with m, and with γ̇."""
+    """The difference from the exact law is tau0 exp(-m γ̇)."""
     tau0, flowing = 188.91, make(LAWS[name], yield_stress=0.0)
     for m in (2.0, 4.0, 8.0, 16.0):
         law = make(LAWS[name], yield_stress=tau0, regularisation=m)
@@ -198,7 +197,8 @@ def test_neo_hookean_is_hooke_at_small_strain():
 
 
 def test_neo_hookean_bar_has_youngs_modulus():
-    """Stretched by a little and free at its sides, which draw in by nu, it pulls back with E."""
+    """Under a small uniaxial strain with free sides, the stress is E times the strain, and the lateral strain
+    -nu times it."""
     law, e = make(LAWS["neo-hookean"]), 1e-6
     F = np.diag([1 + e, 1 - law.poisson_ratio * e, 1 - law.poisson_ratio * e])[None]
     sigma = elastic.stress(LawSubject(law), F)[0]

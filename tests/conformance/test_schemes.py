@@ -1,7 +1,7 @@
-"""What shape functions, update orders and velocity updates must do together, in every space.
+"""Shape functions, update orders and velocity updates together, in every space.
 
-Mass and momentum are kept to rounding, results do not depend on the number of threads nor on where on the
-grid a body is, and mirrors and periodic faces stand for the scene that they replace.
+Mass and momentum are conserved to rounding. Results do not depend on the number of threads, nor on the
+position of a body on the grid. A scene with mirrors or periodic faces has the result of the whole scene.
 """
 
 from __future__ import annotations
@@ -134,7 +134,8 @@ def test_thread_count_changes_no_bit_of_a_fluid(space, volumetric):
 @each_space
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 def test_thread_count_changes_no_bit_of_two_materials_with_all_there_is(space, order):
-    """An affine velocity, averaged pressures, an exact yield stress, and a block of rubber beside it."""
+    """With affine velocities, averaged pressures, an exact yield stress, and a block of rubber beside the
+    fluid."""
     dim = 3 if space == "3d" else 2
     lower, middle, upper = [0, 0, 0][:dim], [[9, 8], [9, 5, 4]][dim - 2], [[16, 8], [17, 5, 4]][dim - 2]
     bodies = [
@@ -190,7 +191,7 @@ def test_symmetry_planes_stand_for_the_other_half(space, scheme):
 
 @each_scheme
 def test_a_plane_of_symmetry_stands_for_the_mirrored_body(scheme):
-    """A block that is thrown on a plane of symmetry moves as one that meets its mirror image."""
+    """A block thrown at a plane of symmetry moves like one that meets its mirror image."""
     body = ([3, 0], [7, 4], RUBBER, [0.0, -1.0])
     image = ([3, -4], [7, 0], RUBBER, [0.0, 1.0])
     floor = simulate("plane-strain", scheme, [body], [[0, 10], [0, 8]], {"z_min": "symmetry"})
@@ -213,7 +214,7 @@ def test_a_plane_of_symmetry_stands_for_the_mirrored_body(scheme):
 
 @every_pair("scheme, axis, direction", SCHEMES, [0, 1], [1, -1])
 def test_window_follows_a_fast_body(scheme, axis, direction):
-    """A small body crosses many blocks of a big domain; not one gram is left outside the stored nodes."""
+    """A small body crosses many blocks of a large domain, and all of its mass stays on stored nodes."""
     lower, upper = [100, 100], [101, 102]
     velocity = [0.0, 0.0]
     velocity[axis] = 60.0 * direction
@@ -234,7 +235,7 @@ def test_window_follows_a_fast_body(scheme, axis, direction):
 
 @each_scheme
 def test_motion_does_not_depend_on_the_place(scheme):
-    """A deforming body does the same 1000 cells further on, window, blocks and all."""
+    """A deforming body moves in the same way 1000 cells further on."""
     far = 1003
     found = []
     for corner in (3, far):

@@ -1,8 +1,8 @@
-"""What every registered shape function must be: a partition of unity that knows its own gradient.
+"""Requirements on every registered shape function: a partition of unity with the right gradients.
 
-Every one goes through the kit that third parties test theirs with, and through what is said here; one with
-parameters is tried with its defaults. Averages over a particle's box are checked only
-for those that average, which they show by their weights changing with the half-size.
+Every shape function passes the conformance kit for third parties and the tests below, with its default
+parameters. Averages over the box of a particle are checked only for shape functions whose weights change with
+the half-size.
 """
 
 from __future__ import annotations
@@ -116,11 +116,10 @@ def test_radial_averages_are_weighted_with_r(shape):
 
 @averaging
 @pytest.mark.parametrize("side", [-1, 1])
-def test_a_node_that_is_barely_touched_has_weight_and_gradient_small_alike(shape, side):
-    """A box of w cells that reaches over a node by e gives it e²/2w and e/w, from the last digit of e on.
-
-    A weight that rounding makes zero, beside a gradient that is not, is force on a node without mass.
-    """
+def test_weight_and_gradient_of_a_barely_touched_node_vanish_together(shape, side):
+    """A box of width w (in cells) that overlaps a node by e gives it the weight e²/2w and the gradient e/w,
+    for any e. If rounding made the weight zero and the gradient not, there would be a force on a node without
+    mass."""
     w, node = 0.5, 1 if side < 0 else 2
     x = (node - side * w / 2) * DX + side * np.arange(1, 400) * np.spacing(DX)
     half_size = np.full_like(x, w / 2 * DX)
@@ -138,7 +137,7 @@ def test_a_node_that_is_barely_touched_has_weight_and_gradient_small_alike(shape
 
 @averaging
 def test_a_cell_full_of_contiguous_boxes_is_seen_as_continuous_matter(shape):
-    """Contiguous boxes of one density have, at every node inside, the mass of the node's cell."""
+    """Contiguous boxes of one density give every inner node the mass of one cell."""
     per_cell = 3
     x = (np.arange(per_cell * CELLS)[:, None] + 0.5) * DX / per_cell
     base, weight, _ = tables(shape, x, np.full_like(x, DX / per_cell / 2))

@@ -1,4 +1,4 @@
-"""Every registered surface and contact, with parameters, goes through the kit that third parties use."""
+"""Every registered surface and contact, with parameters, passes the conformance kit for third parties."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Laws with an exact yield stress, and viscous laws in their relaxed form: the flow curve and the spring."""
+"""Laws with an exact yield stress, and viscous laws in their relaxed form: flow curve and elastic part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MODULUS = maxwell.STIFFNESS * DENSITY * SOUND_SPEED**2
 
 
 def steady_shear(law, rates, strain=2.0, steps=2000):
-    """Shear stress after a strain of 2, which is steady: it takes tau/G to yield and mu/G to settle."""
+    """Shear stress after a strain of 2, at which it is steady."""
     rates = np.asarray(rates, dtype=float)
     found = []
     for rate in rates:
@@ -85,8 +85,8 @@ def test_without_yield_stress_it_is_the_power_law():
 
 
 @pytest.mark.parametrize("name", EVP)
-def test_below_yield_it_is_elastic_and_forgets_nothing(name):
-    """Sheared to 0.9 of the yield strain and back: Hooke on the way, and no stress at the end."""
+def test_below_yield_it_is_elastic(name):
+    """Shear to 0.9 of the yield strain and back: Hooke's law on the way, and no stress at the end."""
     law = make(EVP[name], shear_modulus=MODULUS)
     strain = 0.9 * law.yield_stress / MODULUS
     specimens = Specimens(law, 1)
@@ -97,8 +97,8 @@ def test_below_yield_it_is_elastic_and_forgets_nothing(name):
 
 
 @pytest.mark.parametrize("name", EVP)
-def test_it_truly_arrests(name):
-    """Held after flow, the stress falls to the yield stress and stays there."""
+def test_it_comes_to_rest(name):
+    """When the strain is held after flow, the stress falls to the yield stress and stays there."""
     law = make(EVP[name])
     specimens = Specimens(law, 1)
     specimens.drive(simple_shear(np.array([5.0]), 0, 2), 0.5, 500)
@@ -108,8 +108,8 @@ def test_it_truly_arrests(name):
 
 
 @pytest.mark.parametrize("name", EVP)
-def test_the_step_does_not_matter(name):
-    """Backward Euler in the flow: any step is stable, and ten times the step changes little."""
+def test_the_step_has_little_influence(name):
+    """Backward Euler is stable for any step, and a step ten times as long changes the result little."""
     law = make(EVP[name])
     fine, coarse = (
         Specimens(law, 1).drive(simple_shear(np.array([2.0]), 0, 2), 0.2, steps)[0, 0, 2]
@@ -153,7 +153,7 @@ def test_general_solution_of_a_curve_beyond_any_number():
 @pytest.mark.parametrize("stiffness", [1e-6, 1e-2, 1.0, 1e4])
 @pytest.mark.parametrize("of_rate", [False, True])
 def test_general_solution_of_a_curve_in_single_precision(stiffness, of_rate):
-    """It rises as well as in double precision, and its stress is right to what it can tell apart."""
+    """A curve in single precision gives the stress to single precision."""
 
     def curve(rate):
         return 188.91 + 45.65 * rate**0.4

@@ -1,4 +1,4 @@
-"""A velocity update with nothing wrong with it, and some with one fault each."""
+"""A correct velocity update, and mutants of it with one fault each."""
 
 from sound_laws import Sound
 
@@ -6,21 +6,21 @@ from mpmkit.contracts import VelocityUpdate
 
 
 class Undamped(Sound, VelocityUpdate):
-    """FLIP, which has nothing wrong with it."""
+    """Correct: FLIP."""
 
     def map_to_particles(self, ops, dt):
         ops.move_particles(dt, flip=1.0)
 
 
 class Amplified(Sound, VelocityUpdate):
-    """Makes what the grid does not see grow by a fifth in each step."""
+    """Fault: the part of the velocity that the grid cannot represent grows by a fifth in each step."""
 
     def map_to_particles(self, ops, dt):
         ops.move_particles(dt, flip=1.2)
 
 
 class Still(Sound, VelocityUpdate):
-    """Moves nothing."""
+    """Fault: does not move the particles."""
 
     def map_to_particles(self, ops, dt):
         ops.update_velocity_gradient()
@@ -32,7 +32,7 @@ class TwiceAsFar(Sound, VelocityUpdate):
 
 
 class Twice(Sound, VelocityUpdate):
-    """Adds the change of the step twice."""
+    """Fault: adds the change of the step twice."""
 
     def map_to_particles(self, ops, dt):
         ops.move_particles(dt, flip=1.0)

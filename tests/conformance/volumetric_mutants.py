@@ -1,4 +1,4 @@
-"""Volumetric treatments with nothing wrong with them, and some with one fault each."""
+"""A correct volumetric treatment, and mutants of it with one fault each."""
 
 import numpy as np
 from sound_laws import Sound
@@ -7,28 +7,28 @@ from mpmkit.contracts import VolumetricTreatment
 
 
 class Half(Sound, VolumetricTreatment):
-    """Half of the field and half of its average, which has nothing wrong with it."""
+    """Correct: half of the field and half of its average."""
 
     def average(self, ops, field):
         return (field + ops.average(field)) / 2
 
 
 class ByMass(Sound, VolumetricTreatment):
-    """Averaged by mass and not by volume: not symmetric in the volumes once they differ."""
+    """Fault: weights particles by their index, which is not symmetric in the volumes."""
 
     def average(self, ops, field):
         return ops.average(field * np.linspace(0.5, 1.5, len(field)))
 
 
 class Larger(Sound, VolumetricTreatment):
-    """Makes all of it a tenth larger."""
+    """Fault: increases all values by a tenth."""
 
     def average(self, ops, field):
         return 1.1 * ops.average(field)
 
 
 class OneSided(Sound, VolumetricTreatment):
-    """Keeps a constant but is not symmetric."""
+    """Fault: keeps a constant field but is not symmetric."""
 
     def average(self, ops, field):
         return np.roll(field, 1)

@@ -1,4 +1,4 @@
-"""Hypothesis strategies of case files: valid ones, made from the schema, and what may be wrong with one."""
+"""Hypothesis strategies of case files: valid ones, made from the schema, and invalid ones."""
 
 from __future__ import annotations
 
@@ -116,10 +116,8 @@ def _slowest_wave(case: dict[str, Any]) -> float:
 
 
 def _slower_than_sound(case: dict[str, Any], height: float) -> None:
-    """Nothing is meant to fly nearly as fast as its waves: gravity and speeds fit the softest material.
-
-    Where the sound speed is given by a fall, it fits gravity by itself.
-    """
+    """Gravity and speeds are far below the wave speed of the softest material. A sound speed that is computed
+    from the height of fall fits gravity already."""
     own = [
         body.material.constitutive_law.wave_speed(body.material.density, body.material.sound_speed)
         for body in parse_case(case).bodies
@@ -284,7 +282,7 @@ def mutants(draw: st.DrawFn, walled: bool | None = None) -> dict[str, Any]:
 
 @st.composite
 def invalid_cases(draw: st.DrawFn) -> dict[str, Any]:
-    """A valid case with one thing in it that no case may have, wherever that is."""
+    """A valid case with one invalid entry at any place."""
     data = copy.deepcopy(draw(valid_cases()))
     what = draw(
         st.sampled_from(["unknown key", "wrong type", "missing", "not above zero", "too many", "name"])

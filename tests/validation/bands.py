@@ -1,6 +1,6 @@
-"""Bands: what a test expects of a number, how far it may be off, and how much of that it used up.
+"""Bands: the expected value of a number, the tolerance, and the part of the tolerance that is used.
 
-The verdict in the validation report and the assertion of the test are this one comparison.
+The verdict in the validation report and the assertion of the test are the same comparison.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ class Band:
     """Significant digits in which an obtained number is worth reading."""
 
     def used(self, obtained: float) -> float:
-        """How close to the edge of the band it is: 1 on the edge, 0 far inside, infinite outside.
+        """How close to the edge of the band the number is: 1 on the edge, 0 far inside, infinite outside.
 
-        It ranks runs that share a line of the report. Between two ends it is the part of the band used up;
-        with one end it falls with the distance from that, 1/2 at once the limit's own size.
+        It ranks runs that share a line of the report. A band with two ends: the distance from its middle over
+        half of its width. A band with one end: the value falls with the distance from that end, to 1/2 where
+        the distance is as large as the limit itself.
         """
         if not self.holds(obtained):
             return math.inf

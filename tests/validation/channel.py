@@ -67,7 +67,8 @@ class Fluid:
         return np.interp(z, edges, speed)
 
     def material(self, m: float | None = None, **more: Any) -> dict[str, Any]:
-        """As a case file writes it, by the simplest law that can; without m with an exact yield stress."""
+        """Material as a case file writes it, with the simplest law that describes it; without m, the yield
+        stress is exact."""
         common = {"density": self.density, **more}
         if self.yield_stress == 0 and self.flow_index == 1:
             return {"law": "newtonian", "viscosity": self.consistency, **common}
@@ -87,7 +88,7 @@ class Fluid:
 
 
 class Channel:
-    """The scene, and what is asked of it."""
+    """The scene, and the quantities that are measured in it."""
 
     def __init__(
         self,
@@ -180,7 +181,7 @@ class Channel:
         self.particles.velocity[:, 0] = speed
 
     def sharpen(self, m: float) -> None:
-        """Go on with another exponent."""
+        """Continue the run with another Papanastasiou exponent m, s."""
         group = self.particles.groups[0]
         group.law = group.law.model_copy(update={"regularisation": m})
         self.m = m

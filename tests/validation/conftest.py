@@ -1,4 +1,4 @@
-"""What the validation tests share: one thread, and a sheet for what each of them measured."""
+"""Fixtures of the validation tests: one thread, and a sheet for the results of each test."""
 
 from __future__ import annotations
 

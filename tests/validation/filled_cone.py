@@ -1,4 +1,4 @@
-"""A mould that is closed below and full to the rim, which keeps what is in it at rest."""
+"""A cone that is closed at its bottom and filled, in which a fluid is at rest."""
 
 from __future__ import annotations
 

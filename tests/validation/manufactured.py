@@ -62,7 +62,7 @@ def body_force(X: np.ndarray, t: float, A: float) -> np.ndarray:
 
 
 class Bar:
-    """The scene, and how far it is from the solution."""
+    """The scene, and its error against the solution."""
 
     def __init__(
         self, cells: int, amplitude: float, fraction: float = 0.1, particles: int = 2, **scheme
@@ -140,7 +140,7 @@ class Bar:
         return float(np.sqrt(np.mean(off**2))) / self.amplitude
 
     def largest_error(self, until: float = PERIOD) -> float:
-        """The largest of these on the way; infinite if the run diverges."""
+        """Largest of these errors during the run; infinite if the run diverges."""
         simulation, largest = self.simulation, 0.0
         dt = simulation.time_step
         with np.errstate(all="ignore"):

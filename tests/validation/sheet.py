@@ -32,7 +32,7 @@ FOLDER, RESUME = "MPMKIT_VALIDATION_RECORDS", "MPMKIT_VALIDATION_RESUME"
 
 
 def file_of(test: str) -> Path | None:
-    """Where the sheet of a test is kept; None where nothing is."""
+    """File of the sheet of a test; None if sheets are not kept."""
     folder = os.environ.get(FOLDER)
     digest = hashlib.sha1(test.encode(), usedforsecurity=False).hexdigest()[:16]
     return Path(folder) / f"{digest}.json" if folder else None

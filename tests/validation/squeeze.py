@@ -1,4 +1,4 @@
-"""A disc between two plates that it sticks to, of which the upper one comes down."""
+"""A disc between two plates without slip; the upper plate moves down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a step may be: measured by trying, and from the largest eigenvalue of what the grid does."""
+"""Longest stable step: measured by trial, and from the largest eigenvalue of the grid's operator."""
 
 from __future__ import annotations
 

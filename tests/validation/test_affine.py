@@ -1,4 +1,4 @@
-"""Affine velocities: what they keep, and a damping that is a matter of time and not of steps."""
+"""Affine velocities: conserved angular momentum, and a damping that does not depend on the step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SPIN = 5.0
 
 
 def angular_momentum_lost(cell_size: float, velocity: object, order: str = "usl") -> float:
-    """Part of the angular momentum of an elastic disc that one turn costs."""
+    """Part of its angular momentum that an elastic disc loses in one turn."""
     simulation = flight("plane-strain", ("cpgimp", order, velocity), cell_size=cell_size)
     p = simulation.particles
     centre = np.array([1.0, 1.0]) - simulation.grid.lower
@@ -37,7 +37,7 @@ def angular_momentum_lost(cell_size: float, velocity: object, order: str = "usl"
 
 @pytest.mark.parametrize("order", ["usl", "usf", "musl"])
 def test_angular_momentum(validate, order):
-    """A disc of three and of six cells: 14 to 23 % a turn are lost with FLIP, hardly any with APIC."""
+    """Discs of three and of six cells lose 14 to 23 % in a turn with FLIP, and hardly anything with APIC."""
     flip = angular_momentum_lost(DX, "flip", order)
     coarse, fine = (angular_momentum_lost(cell, "apic", order) for cell in (DX, DX / 2))
     name = f"Spinning disc, APIC, {order.upper()}"
@@ -89,7 +89,7 @@ DAMPED = {"name": "apic", "rate": 5.0}
 
 
 def test_damping_does_not_depend_on_the_step(validate):
-    """At a tenth of the step APIC takes as much in a second, PIC ten times as much."""
+    """With a tenth of the step, APIC damps as much per second as before, and PIC ten times as much."""
     coarse, fine = (math.log(shear_wave(DAMPED, fraction, 8)) for fraction in (0.4, 0.04))
     validate(
         "Shear wave of 8 cells, APIC: damping at a tenth of the step", fine / coarse, close_to(1.0, rel=0.03)
@@ -99,7 +99,7 @@ def test_damping_does_not_depend_on_the_step(validate):
 
 
 def test_damping_spares_what_the_grid_resolves(validate):
-    """It is of the fourth order in the wave number, where PIC's is a viscosity, of the second."""
+    """APIC damps with the fourth power of the wave number; PIC is a viscosity, with the second power."""
     short, long = (math.log(shear_wave(DAMPED, 0.4, wave)) for wave in (8, 16))
     order = math.log2(short / long)
     validate("Shear waves of 8 and 16 cells, APIC: order of the damping", order, close_to(4.0, abs=0.2))

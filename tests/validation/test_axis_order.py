@@ -28,10 +28,10 @@ each_order = pytest.mark.parametrize("order", ORDERS, ids=str)
 
 def scene(places, lower, upper, domain, faces, gravity, velocity=None, material=FLUID, update="musl"
 ):  # fmt: skip
-    """A block; what is given of axis i is that of the grid's axis ``places[i]``. Lengths in cells.
+    """A block; the data of the scene's axis i are given to the grid's axis ``places[i]``. Lengths in cells.
 
-    ``faces`` has a pair an axis, what is at its lower and its upper end; None is open. To USL a node that a
-    box reaches by rounding alone is as stiff as one that it reaches by far: with it, rounding counts.
+    ``faces`` has a pair for each axis: the faces at its lower and its upper end; None is open. With USL
+    rounding has an influence: a node that a box reaches by rounding alone is as stiff as any other.
     """
     dim = len(places)
     axes = "xyz" if dim == 3 else "xz"
@@ -82,9 +82,10 @@ FILMS = [
 
 @pytest.mark.parametrize(("order", "side", "edges"), FILMS, ids=str)
 def test_film_slides_on_a_coulomb_wall_alike_along_every_axis(validate, order, side, edges):
-    """a = g (sin θ - μ cos θ), whatever the axes are called and whichever end of them the wall is at.
+    """a = g (sin θ - μ cos θ), for every order of the axes and with the wall at either end of its axis.
 
-    Its seam is across the flow; in three dimensions its flanks are a period or symmetry planes.
+    The film is periodic along the flow; in three dimensions it is periodic across the flow too, or lies
+    between symmetry planes.
     """
     angle, dim, height = math.radians(DEGREES), len(order), 4
     sign = 1.0 if side == "lower" else -1.0
@@ -95,7 +96,7 @@ def test_film_slides_on_a_coulomb_wall_alike_along_every_axis(validate, order, s
     lower, upper = ([ends[k] for ends in sizes] for k in (0, 1))
     simulation = scene(order, lower, upper, [*sizes[:-1], [0, 6 + height]], faces, gravity, update="usl")
     p, times, speeds = simulation.particles, [], []
-    while simulation.time < 0.15:
+    while simulation.time < 0.1:
         simulation.advance()
         times.append(simulation.time)
         speeds.append(float(p.mass @ p.velocity[:, order[0]] / p.mass.sum()))
@@ -145,7 +146,7 @@ def test_half_beside_a_coulomb_wall_is_the_whole(validate, order):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_corner_of_coulomb_walls_knows_no_first_axis(validate, dim):
-    """A block that is thrown into a corner of two or three Coulomb walls, with its axes in every order."""
+    """A block thrown into a corner of two or three Coulomb walls, for every order of the axes."""
     found = []
     for order in permutations(range(dim)):
         faces = [[RUB, None], [{"kind": "friction", "coefficient": 0.7}, None], ["symmetry", None]]

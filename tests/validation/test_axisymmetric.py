@@ -1,4 +1,4 @@
-"""Axisymmetric scenes: u_r = e r is a uniform expansion, exactly, at the axis too; a ring has its mass."""
+"""Axisymmetric scenes: u_r = e r is exactly a uniform expansion, at the axis too; mass of rings."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_uniform_expansion_moves_every_ring_in_proportion(shape):
 @each_shape
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 def test_particles_that_expand_uniformly_are_seen_so_inside(shape, order):
-    """v_r = e r, v_z = -2 e z at the particles: D_rr = D_θθ inside the body, to what mapping allows."""
+    """v_r = e r, v_z = -2 e z at the particles: D_rr = D_θθ inside the body, to the error of the mapping."""
     simulation = scene(shape, {"kind": "box", "lower": [0.0, -0.4], "upper": [0.8, 0.4]}, order=order)
     p = simulation.particles
     rate = 0.1
@@ -151,7 +151,7 @@ def test_mass_is_that_of_the_full_circle(validate, body, volume):
 
 @each_shape
 def test_nodal_force_of_a_uniform_pressure_vanishes_inside(validate, shape):
-    """div (p I) = 0: the hoop stress balances what the radial term leaves, node by node, on the axis too."""
+    """div (p I) = 0: hoop stress and radial stress balance at every node, on the axis too."""
     simulation = scene(shape, {"kind": "box", "lower": [0.0, -0.3], "upper": [0.6, 0.3]})
     ops, p = simulation.operations, simulation.particles
     p.stress[:, :3] = -1000.0

@@ -1,4 +1,4 @@
-"""A stiff block on a wall at any place and angle: friction, and when the wall is felt."""
+"""A stiff block on a wall at any position and angle: friction, and the time of first contact."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def mean_acceleration(simulation, along, since, until):
 @pytest.mark.slow
 @pytest.mark.parametrize(("degrees", "offset"), [(0, (0, 0.37)), (20, (0.3, 0.7)), (33, (0.1, 0.55))])
 def test_block_slides_down_a_wall(validate, degrees, offset):
-    """a = g (sin θ - μ cos θ); a block that is let go rocks as it slides: over long it means out."""
+    """a = g (sin θ - μ cos θ). A released block rocks as it slides; a mean over a long time removes this."""
     simulation, along, _ = block(degrees, offset, coulomb(0.2))
     tilt = math.radians(INCLINE)
     exact = G * (math.sin(tilt) - 0.2 * math.cos(tilt))
@@ -111,7 +111,7 @@ TAKES = pytest.mark.xfail(
     ],
 )
 def test_block_slides_on_a_wall_as_on_a_face(validate, degrees, offset):
-    """Wherever the wall lies between the nodes."""
+    """The position of the wall between the nodes has no influence."""
     time = 0.3
     simulation, along, _ = block(degrees, (0.3, offset), coulomb(0.2))
     advance_to(simulation, time)
@@ -164,9 +164,9 @@ def thrown(degrees, offset, contact, gravity, speed, gap=3.5):
 
 @pytest.mark.parametrize("contact", ["slip", "stick", coulomb(0.3)], ids=str)
 def test_wall_is_felt_when_it_is_reached(validate, contact):
-    """Nothing before: a node acts once material has come to the wall, however near the node is.
+    """A wall does not act before material has reached it, however near to the wall a node is.
 
-    The block falls on two of the walls, and is thrown at the others; with each contact.
+    The block falls on two of the walls, and is thrown at the others; with every kind of contact.
     """
     falls = [thrown(*place, contact, G, 0.0) for place in CORNERED[::2]]
     throws = [thrown(*place, contact, 0.0, 1.0) for place in CORNERED[1::2]]

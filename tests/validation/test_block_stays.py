@@ -1,7 +1,8 @@
 """A stiff block that friction must hold on an incline: on a face of the grid, and on a plane between nodes.
 
-It is let go without stress: its push on the wall swings between nothing and twice its weight, and while it is
-less than tan θ/μ of the weight the block slides. Once that has rung down it stays.
+The block is released without stress, so that its normal force on the wall oscillates between zero and twice
+its weight. While the force is less than tan θ/μ of the weight, the block slides. When the oscillation has
+died down, the block stays.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def on_plane(coefficient):
 
 
 def hold(validate, wall, coefficient, since, until):
-    """How far it goes, over the way of a block with the coefficient 0.2 in the same time."""
+    """Distance that the block slides, over that of a block with the friction coefficient 0.2."""
     simulation = {"face": on_face, "plane": on_plane}[wall](coefficient)
     advance_to(simulation, since)
     before = centre(simulation)[0]

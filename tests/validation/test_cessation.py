@@ -1,4 +1,4 @@
-"""Cessation of plane Poiseuille flow: a viscoplastic fluid comes to rest, and in finite time."""
+"""Cessation of plane Poiseuille flow: a viscoplastic fluid comes to rest in a finite time."""
 
 from __future__ import annotations
 

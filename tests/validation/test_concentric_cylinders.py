@@ -37,8 +37,10 @@ def test_the_torque_of_reiner_is_that_of_the_table(turns, yield_stress, exact):
 
 
 def cylinders(turns, yield_stress, times, cell=0.005):
-    """Torques of both on the material, N m for a height of ``TALL``, and power of the inner one, W, between
-    each two of the times."""
+    """Torques of both walls on the material, N m for a height of ``TALL``, and power of the inner wall, W.
+
+    All are means from each of the times to the next.
+    """
     rate, middle = 2 * math.pi * turns, np.array([0.15, 0.15])
     area = math.pi * (OUTER**2 - INNER**2)
     sample = lattice(

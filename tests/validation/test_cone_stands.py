@@ -1,8 +1,8 @@
 """A cone of yield-stress material stands by itself if tau0/(rho g H) is above a threshold.
 
-For the cone of the slump test, 0.1 and 0.2 m wide and 0.3 m high, it is 0.266 on a stick floor and 0.320 on a
-slip floor. It is let go at once. What does not flow sags, elastic as it is, by rho g H/(3 G) of its height,
-half a per cent with G = 5e5 Pa, and rings for a while about that.
+For the cone of the slump test, 0.1 and 0.2 m wide and 0.3 m high, the threshold is 0.266 on a stick floor and
+0.320 on a slip floor. The cone is released at once. A cone that does not flow is still elastic: it sags by
+rho g H/(3 G) of its height, half a per cent with G = 5e5 Pa, and oscillates about this for a while.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TIMES = np.linspace(0, 0.5, 51)
 
 
 def slump(floor: str, number: float, cell_size: float = 0.01) -> np.ndarray:
-    """Slump over the height at ``TIMES``, for tau0/(rho g H) = number."""
+    """Slump over the height of the cone at ``TIMES``, for tau0/(rho g H) = number."""
     material = bingham(
         number * WEIGHT, VISCOSITY, density=DENSITY, sound_speed={"factor": 10}, shear_modulus=5e5
     )
@@ -56,14 +56,14 @@ def slump(floor: str, number: float, cell_size: float = 0.01) -> np.ndarray:
 
 
 def still_going(slumped: np.ndarray) -> float:
-    """By how much it slumps on, over its height, between two tenths of a second about 0.2 s and 0.45 s."""
+    """Increase of the slump over the height from about 0.2 s to about 0.45 s, both means over 0.1 s."""
     early, late = (np.abs(TIMES - t) <= 0.05 for t in (0.2, 0.45))
     return float(slumped[late].mean() - slumped[early].mean())
 
 
 @pytest.mark.parametrize("floor", THRESHOLDS)
 def test_cone_stands_or_flows(validate, floor):
-    """At 1.15 times the threshold nothing goes on flowing; at 0.85 times it flows."""
+    """At 1.15 times the threshold the cone does not flow on; at 0.85 times it flows."""
     title = "A cone let go, about the yield stress at which it stands"
     chart = validate.figure(f"cone_{floor}", f"{title}, {floor} floor", x="time (s)", y="slump over height")
     for part in (0.85, 1.15):

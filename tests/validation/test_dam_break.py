@@ -1,8 +1,8 @@
-"""A column of water let go: Martin & Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324, n² = 2.
+"""A dam break of water: Martin & Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324, n² = 2.
 
-A column a = 57.15 mm wide and 2 a high between a wall and a dam that is drawn away. Its front reaches
-x = Z a at t = T √(a/2g). The experiment's clock starts when the dam has moved, not when the water has, so
-that one time offset is allowed, of at most 0.3 of T, and stated.
+A column a = 57.15 mm wide and 2 a high stands between a wall and a dam that is drawn away. Its front reaches
+x = Z a at t = T √(a/2g). The time of the experiment starts when the dam has moved, not when the water has. So
+one time offset of at most 0.3 of T is allowed, and stated.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def test_initial_energy_and_contact_time(validate):
 
 
 def onset(cell_size, shape):
-    """Time at which a thousandth of the kinetic energy is gone, and the gap that is left then, in cells."""
+    """Time, s, at which the discs have lost 0.1 % of the kinetic energy, and the gap at that time, cells."""
     simulation = discs(cell_size, 4, shape)
     while True:
         simulation.advance()
@@ -113,7 +113,7 @@ def test_collision(validate, shape, order, cell_size):
 
 
 def test_usl_with_linear_functions_does_not_survive(validate):
-    """The known failure: a node entered by one particle takes an enormous velocity gradient."""
+    """A known failure: a node with the mass of a single particle has an enormous velocity gradient."""
     simulation = discs(0.05, 9, "linear", "usl")
     with np.errstate(all="ignore"):
         try:

@@ -1,8 +1,9 @@
-"""Every registered law, one particle: steady shear and squeeze against the flow curve, and what any law owes.
+"""Every registered law, one particle: steady shear and squeeze against the flow curve, and general
+properties.
 
-A particle is driven at a constant velocity gradient L, F = exp(L t). Laws that are elastic below yield have
-to be sheared until they flow; their steady stress is the flow curve's up to their elastic strain tau/G, which
-is 2e-6 here and is added to the band.
+The particle deforms at a constant velocity gradient L, F = exp(L t). Laws that are elastic below yield must
+be sheared until they flow; their steady stress agrees with the flow curve up to their elastic strain tau/G,
+which is 2e-6 here and is added to the band.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def squeeze(rates) -> np.ndarray:
 
 
 def steady(law, gradients, strain: float = 1e-3) -> np.ndarray:
-    """Stress at the end of a strain of this size in each."""
+    """Stress at each velocity gradient after a strain of this size, Pa."""
     found = []
     for L in gradients:
         found.append(Specimens(law, 1).drive(L[None], strain / np.abs(L).max(), 200)[0])
@@ -75,7 +76,7 @@ def shear_stress(law, rates) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [name for name in LAWS if name.removesuffix("-evp") in FLOW_CURVES])
 def test_flow_curve(validate, name):
-    """Shear first: a law that yields on normal components alone has no stress there."""
+    """Shear and squeeze, since a law that yields on normal components alone has no stress in shear."""
     curve, law = FLOW_CURVES[name.removesuffix("-evp")], make(name)
     band = BAND + (ELASTIC if name.endswith("-evp") else 0.0)
     rates = np.array([1.0, 5.0])
@@ -90,7 +91,7 @@ def test_flow_curve(validate, name):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_what_any_law_owes(validate, name):
-    """No work out of a closed cycle, the same stress for any observer, and numbers at rest."""
+    """A closed cycle gives no work, the stress is the same for every observer, and it is finite at rest."""
     law = make(name)
     L = random_gradients(100, isochoric=True)
     L /= np.linalg.norm(L, axis=(1, 2), keepdims=True)  # a strain of 0.2 each

@@ -1,7 +1,8 @@
-"""A cone that is filled and closed below, in which concrete, water or a thick fluid rests under its weight.
+"""A filled cone, closed at its bottom, in which concrete, water or a viscous fluid is at rest under its
+weight.
 
-It starts with the pressure of its weight, which is looked at twelve times a bounce, 4 H/c. ρ c² with
-c = 20 m/s is 140 times the pressure at the foot.
+The fluid starts with the pressure of its weight. The pressure is read twelve times in a period of its
+oscillation, 4 H/c. ρ c² with c = 20 m/s is 140 times the pressure at the bottom.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ def film(degrees: float, cells: int, length: float, time: float = 0.3, sound: fl
 
 
 def film_error(speed, b, cells):
-    """Speed of the surface over the exact one, and the profile's L2 error."""
+    """Speed of the surface over the exact one, and the relative L2 error of the profile."""
     drive = CONCRETE.density * G * math.sin(SLOPE)
     exact = CONCRETE.speed(drive, HEIGHT, b)
     top = b > HEIGHT * (1 - 1 / cells)

@@ -1,6 +1,6 @@
-"""Films down a slope: their speed, and rest below the critical thickness.
+"""Films on a slope: their speed, and rest below the critical thickness.
 
-A film that is barely thick enough shears in a thin layer at its bed; one that is not thick enough stays.
+A film slightly thicker than critical shears in a thin layer at its bed; a thinner film stays at rest.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def film(degrees: float, height: float, m: float, cells: int = 10) -> Channel:
 
 @pytest.mark.slow
 def test_film_on_20_degrees(validate):
-    """Started 3 % too slow, so that it has to find its speed. It flows at 56.42 mm/s."""
+    """The film starts 3 % too slow, so that it must reach its speed by itself: 56.42 mm/s."""
     drive, _ = down_slope(CONCRETE.density, 20)
     flow = film(20, 0.05, CONCRETE.exponent(drive, 0.05, excess=0.008))
     flow.start_with(0.97 * CONCRETE.speed(drive, 0.05, flow.z))
@@ -50,11 +50,11 @@ def midpoint_speed(flow: Channel) -> float:
 
 
 def steady_speed(cells: int, lower: float, upper: float) -> float:
-    """Where the 10° film neither gains momentum nor loses any, from its imbalance at two surface speeds.
+    """Steady surface speed of the 10° film, m/s, from its imbalance of momentum at two surface speeds.
 
-    The steady flow draws every other to it, and never past it. So it lies between these speeds if the film
-    gains at the one and loses at the other, and nothing need be followed for the many seconds in which so
-    slow a film comes to its end. In between a straight line is good enough.
+    Every flow approaches the steady one and never passes it. So the steady speed lies between these two if
+    the film gains momentum at one and loses momentum at the other; a run of the many seconds that so slow a
+    film takes to become steady is not necessary. Between the two speeds a straight line is accurate enough.
     """
     drive, _ = down_slope(CONCRETE.density, 10)
     profile = CONCRETE.speed(drive, 0.05, np.linspace(0, 0.05, 1001))
@@ -77,9 +77,10 @@ def test_film_on_10_degrees(validate):
 
 @pytest.mark.slow
 def test_film_on_10_degrees_is_too_thin_a_layer_for_10_cells(validate):
-    """The sheared layer is 1.4 cells thick, and the midpoint rule over it is 7 % short.
+    """The sheared layer is 1.4 cells thick, and the midpoint rule over it gives 7 % too little.
 
-    So is the answer: that belongs to piecewise linear velocities, not to how they are found.
+    The same is measured: the error comes from piecewise linear velocities, not from the way they are
+    computed.
     """
     drive, _ = down_slope(CONCRETE.density, 10)
     expected = midpoint_speed(film(10, 0.05, CONCRETE.exponent(drive, 0.05, excess=0.01)))
@@ -117,7 +118,7 @@ def test_film_below_its_critical_thickness_stays(validate):
 
 
 def exact_film(degrees: float, height: float, cells: int, *, waves: float) -> Channel:
-    """The accurate set-up, its stress in equilibrium with the weight; ``waves`` is their speed, m/s."""
+    """The accurate set-up, with a shear stress that balances the weight; ``waves`` is the wave speed, m/s."""
     drive, across = down_slope(CONCRETE.density, degrees)
     flow = Channel(
         CONCRETE, height, drive, cells=cells, normal_gravity=across, free_surface=True,
@@ -147,11 +148,12 @@ def test_exact_film_on_10_degrees(validate):
 
 
 def test_exact_film_below_its_critical_thickness_stays(validate):
-    """40 mm on 10°, where 43.1 mm would flow. It is left alone, and then pushed off at 10 mm/s, and stops.
+    """40 mm on 10°, where 43.1 mm would flow: the film stays, and stops again after a push to 10 mm/s.
 
-    Across the slope it starts a trace out of balance, since its layers are where they would be without
-    weight, and rings: with g H/c. Waves of 200 m/s keep that below what is asked for. Once pushed it rings
-    along the slope as well, elastic as it is, every 4 H/c; what counts then is how far it drifts.
+    Across the slope the film starts slightly out of balance, since its layers lie where they would lie
+    without weight, and it oscillates with a speed of g H/c. Waves of 200 m/s keep this speed below the limit.
+    After the push the film, which is elastic, oscillates along the slope too, with a period of 4 H/c; so its
+    drift is tested then.
     """
     flow = exact_film(10, 0.04, 5, waves=200.0)
     free_fall = np.sqrt(2 * 9.81 * 0.04)
@@ -168,7 +170,7 @@ def test_exact_film_below_its_critical_thickness_stays(validate):
 
 
 def mean_travel(flow: Channel, seconds: float) -> float:
-    """How far the film gets along the slope, m: the integral of its mean speed."""
+    """Distance that the film moves along the slope, m: the integral of its mean speed."""
     steps, travelled = 125, 0.0
     for _ in range(steps):
         flow.run(seconds / steps)

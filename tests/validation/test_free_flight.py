@@ -1,4 +1,4 @@
-"""Free flight: no wall, no force but gravity. Mass and momentum are kept to rounding, however long it is."""
+"""Free flight, with gravity only: mass and momentum are conserved to rounding at all times."""
 
 from __future__ import annotations
 
@@ -82,7 +82,8 @@ def test_thrown_ball_flies_a_parabola(validate, scheme):
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 @pytest.mark.parametrize("space", ["plane-strain", "axisymmetric", "3d"])
 def test_wobbling_ball_keeps_mass_and_momentum(validate, space, order):
-    """A ball that is squeezed at the start swings for 1000 steps; its momentum stays to 1e-12."""
+    """A ball that is compressed at the start oscillates for 1000 steps; its momentum stays the same to
+    1e-12."""
     simulation = flight(space, ("cpgimp", order, "flip"))
     p = simulation.particles
     p.velocity[:, -1] += 1.0 - 4.0 * (p.position[:, -1] + simulation.grid.lower[-1] - 1.0)
@@ -107,7 +108,7 @@ def test_wobbling_ball_keeps_mass_and_momentum(validate, space, order):
 
 
 def spin_once(order, cell_size):
-    """A disc turns once: lost part of its angular momentum, and the largest change of a radius in cells."""
+    """Angular momentum that a disc loses in a turn, over all of it, and largest change of a radius, cells."""
     simulation = flight("plane-strain", ("cpgimp", order, "flip"), cell_size=cell_size)
     p = simulation.particles
     centre, spin = np.array([1.0, 1.0]) - simulation.grid.lower, 5.0
@@ -128,10 +129,10 @@ def spin_once(order, cell_size):
 
 @pytest.mark.parametrize("order", REGISTRY.of_kind("order"))
 def test_angular_momentum_converges(validate, order):
-    """With lumped nodal masses it is kept at order 2 only: the loss is 14 to 23 % a turn at R = 3 dx.
+    """With lumped nodal masses the error is of order 2: the loss is 14 to 23 % in a turn at R = 3 dx.
 
-    A node's force acts at the node, its mass sits at the centroid of what the particles gave it; inside they
-    agree, at the surface they differ.
+    The force of a node acts at the node, but its mass comes from particles whose centroid is not there at a
+    surface; inside the body the two agree.
     """
     (coarse, _), (fine, drift) = spin_once(order, DX), spin_once(order, DX / 4)
     name = f"Spinning disc, {order.upper()}"

@@ -1,4 +1,4 @@
-"""Coulomb friction under a round disc that swells: against the disc's own equation along its radius."""
+"""Coulomb friction under a round disc that expands, compared with the equation of motion along its radius."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def reference(coefficient):
 
 @pytest.mark.parametrize("coefficient", [0.0, 0.2, 0.5])
 def test_swelling_disc_rubs_on_its_floor(validate, coefficient):
-    """v_r = e r at first. Near the axis friction stops it at once; further out it slides on."""
+    """v_r = e r at the start. Friction stops the disc at once near the axis; the rest continues to slide."""
     case = {
         "space": "axisymmetric",
         "until": 1.0,

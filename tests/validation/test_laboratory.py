@@ -1,10 +1,10 @@
-"""The laboratory's tests as they ship, in their coarse variants, against what the literature says of them.
+"""The shipped laboratory tests, in their coarse variants, against published formulas.
 
-Formulas for the shape in which a layer comes to rest come from lubrication: the yield stress on the floor
-holds the pressure gradient. They leave out what it takes to stretch the layer (``rheology.deposits``), which
-counts by its depth over its length. The no-slip slump of the finite-element reference rests at 0.409 m, where
-lubrication says 0.470 m, and lubrication with stretching 0.409 m. So runs are held against the latter, with
-the bands of the former, and that the former is missed is expected.
+Formulas for deposits at rest come from lubrication theory: the yield stress on the floor balances the
+pressure gradient. They neglect the stress that stretches the layer (``rheology.deposits``), whose influence
+is of the order of depth over length. The finite-element reference of the slump on a stick floor rests at
+0.409 m; lubrication alone gives 0.470 m, lubrication with stretching 0.409 m. So runs are compared with the
+latter, with the bands of the former. The comparison with lubrication alone is expected to fail.
 """
 
 from __future__ import annotations
@@ -25,12 +25,13 @@ from mpmkit.rheology.laboratory import FORMULAS, THIN, G
 
 pytestmark = pytest.mark.section(8)
 QUICK = {"sagging_film": ("until=0.02",), "coaxial_cylinders": ("until=0.3",)}
-"""What makes a case short enough for the default run: the film is in its steady flow after 5 ms, and the
-cylinders after 0.2 s."""
+"""Changes that make a case short enough for the default run: the film flows steadily after 5 ms, and the
+fluid between the cylinders after 0.2 s."""
 LONG = {"l_box_bars": ("parameters.longest=6",)}
-"""What makes the longest case shorter: h2/h1 changes by 4 % after that."""
+"""Changes that make the longest case shorter: its h2/h1 grows by 4 % after 6 s."""
 FORCES = ("torque_of_vane", "torque_of_cylinder", "plate_force")
-"""Taken as the mean of the last twentieth of the run: they swing with the sound."""
+"""Their result is the mean over the last twentieth of the run, because they oscillate with the sound
+waves."""
 
 
 def given(name: str) -> dict[str, float]:
@@ -56,7 +57,7 @@ def measured(name: str, what: str, *changes: str) -> float:
         if formulas[0].band is not None
     ],
 )
-def test_the_laboratory_measures_what_its_formula_says(validate, name):
+def test_a_laboratory_test_agrees_with_its_formula(validate, name):
     formula = FORMULAS[name][0]
     found = measured(name, formula.measured, *(QUICK | LONG).get(name, ()))
     expected = close_to(formula.value(given(name)), rel=formula.band)
@@ -70,7 +71,7 @@ def test_the_laboratory_measures_what_its_formula_says(validate, name):
 @pytest.mark.parametrize(
     "name", ["slump_flow", "mini_cone_kantro", "mini_cone_haegermann", "lcpc_box", "bostwick", "slope"]
 )
-def test_a_deposit_comes_to_rest_where_lubrication_alone_says(validate, name):
+def test_a_deposit_agrees_with_lubrication_alone(validate, name):
     held, thin = FORMULAS[name]
     assert thin.words == THIN
     expected = close_to(thin.value(given(name)), rel=held.band)
@@ -79,9 +80,9 @@ def test_a_deposit_comes_to_rest_where_lubrication_alone_says(validate, name):
 
 @pytest.mark.parametrize(("part", "hangs"), [(1.05, True), (0.57, False)])
 def test_a_film_hangs_below_its_critical_thickness_and_sags_above_it(validate, part, hangs):
-    """h_c = τ0/(ρ g). The spring of exact yield gives way by 2 τ0 H/(3 G) at most, as its swing begins.
+    """h_c = τ0/(ρ g). The elastic part of a law with exact yield deforms by 2 τ0 H/(3 G) at most.
 
-    With τ0/G = 0.3 % this is 0.2 % of the thickness; the film that sags has gone on by 1 % after 0.04 s.
+    With τ0/G = 0.3 % this is 0.2 % of the thickness; the film that sags has moved by 1 % after 0.04 s.
     """
     p = given("sagging_film")
     stress = part * p["density"] * G * p["thickness"]
@@ -113,9 +114,10 @@ LAST = pytest.mark.xfail(
 @pytest.mark.slow
 @pytest.mark.parametrize("part", [0.5, 0.7, pytest.param(0.8, marks=LAST)])
 def test_the_flow_time_of_a_v_funnel_grows_in_line_with_the_viscosity(validate, part):
-    """Of three viscosities, the middle one lies on the line of the others.
+    """Of three viscosities, the flow time of the middle one lies on the line of the others.
 
-    At 0.7 of the mass the middle has emptied to the outlet; at 0.8 the flow time of the case is taken.
+    When 0.7 of the mass has left, the middle of the funnel is empty down to the outlet; the flow time of the
+    case is that of 0.8.
     """
     times = []
     for mu in (10, 20, 50):
@@ -142,10 +144,8 @@ def test_the_flow_time_of_a_v_funnel_is_that_of_its_finest_run(validate):
 
 @pytest.mark.slow
 def test_a_flow_table_spreads_mortar_with_a_part_of_the_energy_of_its_drops(validate):
-    """A table that stops gives up to m g h to the mortar and keeps the rest; a rigid body would take nothing.
-
-    Mortar without viscosity that took all of it would spread farthest.
-    """
+    """A stopped table gives at most the energy m g h to the mortar. A rigid body would get none; mortar
+    without viscosity would get all and spread farthest."""
     history, p = run("flow_table"), given("flow_table")
     work = float(history["force_work"].values[-1, 0]) / float(history["total_mass"].values[-1])
     energy = G * p["drops"] * p["drop_height"]
@@ -166,8 +166,11 @@ def test_a_frictionless_barrier_is_pushed_along_its_normal(validate):
 
 @pytest.mark.slow
 def test_a_barrier_holds_what_rests_on_it(validate):
-    """½ ρ g h² of the depth at its foot, less π τ0 h/2 where the layer is stretched, as after flowing back
-    from the barrier, and more by as much where it is compressed; 10 % for reading h two cells before it."""
+    """Force ½ ρ g h², with h the depth at the foot of the barrier, and at most π τ0 h/2 more or less.
+
+    The force is less where the layer is stretched, as after flowing back from the barrier, and more where it
+    is compressed. The band has 10 % more, since h is read two cells before the barrier.
+    """
     p, depth = given("barrier"), measured("barrier", "depth_at_barrier")
     weight, stretch = p["density"] * G * depth**2 / 2, math.pi / 2 * p["yield_stress"] * depth
     force = measured("barrier", "force_on_barrier")
@@ -178,9 +181,10 @@ def test_a_barrier_holds_what_rests_on_it(validate):
 @pytest.mark.slow
 @pytest.mark.parametrize("yield_stress", [0.001, 20])
 def test_the_flow_rate_of_a_full_marsh_cone(validate, yield_stress):
-    """Buckingham & Reiner in every section of the full cone, with the kinetic head; 5 Pa is the shipped case.
+    """Buckingham & Reiner in every section of the full cone, with the kinetic head; the shipped case has 5
+    Pa.
 
-    The bands are those of the targets for the first litre, whose closed form tests/test_funnels.py holds.
+    The bands are those of the targets for the first litre; tests/test_funnels.py tests the closed form.
     """
     found = measured("marsh_cone", "outflow_rate", f"parameters.yield_stress={yield_stress}")
     (formula,) = FORMULAS["marsh_cone"]

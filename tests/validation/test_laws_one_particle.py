@@ -36,7 +36,7 @@ def simple_shear(rates, along: int = 0, across: int = 2) -> np.ndarray:
 
 
 def uniaxial(rates, axis: int = 2) -> np.ndarray:
-    """Squeezed along an axis at these rates, and swelling across it at half of them: no change of volume."""
+    """Velocity gradients of a compression along one axis at these rates, 1/s, without change of volume."""
     L = np.zeros((len(rates), 3, 3))
     L[:, range(3), range(3)] = np.asarray(rates)[:, None] / 2
     L[:, axis, axis] = -np.asarray(rates)
@@ -81,7 +81,8 @@ def test_slip_squeeze(validate, axis):
 
 
 def test_what_the_regularisation_leaves_out(validate):
-    """It lowers the stress by tau0 exp(-m γ̇): 1 part in e at γ̇ = 1/m, and below the band for m γ̇ > 14."""
+    """The regularisation lowers the stress by tau0 exp(-m γ̇): by tau0/e at γ̇ = 1/m, and by less than the
+    band for m γ̇ > 14."""
     rate = 1.0
     exact = TAU0 + K * rate**N
     for m in (1.0, 2.0, 5.0, 10.0, 15.0):
@@ -92,7 +93,7 @@ def test_what_the_regularisation_leaves_out(validate):
 
 
 def test_volume_change_gives_no_extra_stress():
-    """The law sees the deviator alone: swelling on top of shear changes nothing."""
+    """The law depends on the deviator alone: expansion in addition to shear does not change the stress."""
     shear = simple_shear(np.array([1.0, 5.0]))
     swelling = shear + 0.7 * np.eye(3)
     law = concrete(1000.0)

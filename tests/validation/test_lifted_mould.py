@@ -1,7 +1,7 @@
-"""The mould of the slump test, lifted: against an independent finite-element solution of the same.
+"""Slump test with a lifted mould, compared with an independent finite-element solution of the same problem.
 
-The reference is incompressible, by the same code as that of the release at once. Nothing in mpmkit is fitted
-to it.
+The reference is incompressible; its code is that of the reference for release at once. Nothing in mpmkit is
+fitted to it.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def compare(validate, name: str, time: np.ndarray, spread: np.ndarray) -> None:
 
 
 def test_the_mould_is_lifted_at_10_mm(validate):
-    """Past T500."""
+    """Until after T500."""
     compare(validate, "Lifted mould, 10 mm", *slump(0.3, 0.01, 0.7))
 
 
@@ -80,7 +80,7 @@ def test_the_mould_is_lifted_until_the_concrete_rests(validate, cell):
 
 @pytest.mark.slow
 def test_a_mould_lifted_ever_faster_tends_to_none(validate):
-    """At 10 m/s it is gone in 0.03 s. How far the spread is off on the way is the row of the next test."""
+    """At 10 m/s the mould is gone in 0.03 s. The next test records the error of the spread over time."""
     time, free = slump(None, 0.01, 2.0)
     off = {speed: np.abs(slump(speed, 0.01, 2.0)[1] / free - 1) for speed in (0.3, 1.0, 10.0)}
     on_the_way, late = time >= 0.1 - 1e-9, time >= 0.5 - 1e-9

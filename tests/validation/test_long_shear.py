@@ -1,8 +1,8 @@
-"""Flows that go on: material that is sheared many times over keeps its speed, its height and its volume.
+"""Flows with long shear: speed, height and volume of the material stay right.
 
-Shear scrambles neighbours. Without a redistribution boxes, volumes and places of the particles come to say
-different things, and a steady film slows down to 0.67 of its speed in 9.6 s and to 0.44 in 12 s. All scenes
-here have the default scheme.
+Shear changes the neighbours of particles. Without a redistribution, their boxes, volumes and positions then
+contradict each other, and a steady film slows down to 0.67 of its speed in 9.6 s and to 0.44 in 12 s. All
+scenes here have the default scheme.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ FILMS = {
 
 
 def film(fluid: Fluid, degrees: float, cells: int, until: float, cell: float = 0.005) -> Simulation:
-    """A film on a stick floor, let go, in a period of a few cells."""
+    """A film on a stick floor that starts from rest, periodic over a few cells."""
     drive, across = down_slope(fluid.density, degrees)
     return scene(
         until=until,
@@ -80,10 +80,11 @@ def film(fluid: Fluid, degrees: float, cells: int, until: float, cell: float = 0
     "name", [pytest.param(name, marks=() if name == "mortar, 30°" else slow) for name in FILMS]
 )
 def test_a_film_keeps_its_speed_its_height_and_its_density(validate, name):
-    """Once it is steady, at every time that is looked at.
+    """Tested at several times when the film is steady.
 
-    By 12 s the surface of the mortar has moved 7 m, 360 of the scene's lengths, and the shear at the floor is
-    220. The height is twice that of the centre of mass; single particles may lie on a Newtonian surface.
+    By 12 s the surface of the mortar has moved 7 m, 360 times the length of the scene, and the shear at the
+    floor is 220. The height is taken as twice that of the centre of mass, since single particles may lie on a
+    Newtonian surface.
     """
     fluid, degrees, cells, until = FILMS[name]
     simulation = film(fluid, degrees, cells, until)
@@ -167,10 +168,10 @@ def test_a_pipe_keeps_its_speed(validate, until):
     ("yield_stress", "viscosity", "density"),
     [pytest.param(40.0, 20.0, 2300.0, marks=slow), pytest.param(10.0, 1.0, 1900.0, marks=slow)],
 )
-def test_what_is_let_go_in_a_tank_does_not_sink_into_itself(validate, yield_stress, viscosity, density):
-    """No lower than the flat pool, less 0.5 %, of which 0.3 % are compression by its own weight.
+def test_material_released_in_a_tank_keeps_its_volume(validate, yield_stress, viscosity, density):
+    """The centre of mass stays within 0.5 % of that of a flat pool; 0.3 % are compression by its own weight.
 
-    Without a redistribution the centre of mass sinks to 0.764, or with thinner mortar to 0.62.
+    Without a redistribution it sinks to 0.764 of that height, or with thinner mortar to 0.62.
     """
     width, height, length, until = 0.56, 0.28, 1.5, 5.0
     simulation = scene(
@@ -195,7 +196,7 @@ def test_what_is_let_go_in_a_tank_does_not_sink_into_itself(validate, yield_stre
 
 @pytest.mark.slow
 def test_water_that_swings_for_long_keeps_its_volume(validate):
-    """A hundred periods of the first wave. Without a redistribution it sinks to half of its height."""
+    """A hundred periods of the first wave. Without a redistribution the water sinks to half of its height."""
     length, depth, cell, gravity = 0.4, 0.2, 0.02, 9.81
     k = math.pi / length
     until = 100 * 2 * math.pi / math.sqrt(gravity * k * math.tanh(k * depth))
@@ -218,7 +219,7 @@ def test_water_that_swings_for_long_keeps_its_volume(validate):
 
 @pytest.mark.slow
 def test_concrete_lies_still_in_the_channel_of_an_l_box(validate):
-    """A column that is let go in a box 0.8 m long and comes to rest from wall to wall."""
+    """A column is released in a box 0.8 m long and comes to rest from wall to wall."""
     length, width, height = 0.8, 0.2, 0.4
     simulation = scene(
         until=5.0,

@@ -51,7 +51,7 @@ def test_body_force_is_that_of_the_motion():
 @pytest.mark.parametrize("shape", ["linear", "cpgimp"])
 @pytest.mark.parametrize("order", ORDERS)
 def test_small_motion_converges_at_second_order(validate, order, shape):
-    """No particle crosses a cell: all are of second order."""
+    """No particle crosses a cell, and all schemes are of second order."""
     found = errors(SMALL, shape, order)
     name = f"Manufactured solution, A = 1e-4, {shape}, {order.upper()}: observed order"
     validate(name, observed_order(found), above(1.8, "2"))
@@ -71,9 +71,9 @@ def test_large_motion_converges_with_contiguous_boxes(validate, rule, order, lea
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("amplitude", [0.02, LARGE])
 def test_linear_functions_fail_on_a_large_motion(validate, order, amplitude):
-    """Particles cross cells, and where their number in a cell is not even, the cell's integral is wrong.
+    """Particles cross cells, and where their number in a cell is uneven, the integral over the cell is wrong.
 
-    The error grows as the cells shrink: that the known method fails here is as much a result as an order.
+    The error grows as the cells become smaller. The test keeps this known failure of the method on record.
     """
     found = errors(amplitude, "linear", order)
     name = f"Manufactured solution, A = {amplitude:g}, linear, {order.upper()}"
@@ -84,7 +84,7 @@ def test_linear_functions_fail_on_a_large_motion(validate, order, amplitude):
 
 
 def test_boxes_that_stay_as_they_were_are_no_longer_contiguous(validate):
-    """uGIMP, ``fixed``: at F = 0.7 to 1.3 boxes overlap and leave gaps; its order is gone."""
+    """uGIMP, ``fixed``: at F = 0.7 to 1.3 boxes overlap and leave gaps; the order of convergence is lost."""
     fixed, contiguous = (errors(LARGE, shape, "usl") for shape in (FIXED, CONTIGUOUS["strain"]))
     name = "Manufactured solution, A = 0.05, boxes fixed, USL: error at 64 cells over that of cpGIMP"
     validate(name, fixed[-1] / contiguous[-1], above(2.0, "larger"))

@@ -1,4 +1,4 @@
-"""A periodic axis of one cell: what does not vary along it is the same with one cell as with two or three."""
+"""A flow that does not vary along a periodic axis is the same with one cell along it as with two or three."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FLUID = {"law": "newtonian", "density": 1000.0, "viscosity": 50.0, "sound_speed"
 
 
 def layer(cells, shape, order):
-    """Speed by height of a layer that gravity draws along a stick floor, in a period of these cells."""
+    """Speed, m/s, by height of a layer that flows along a stick floor, in a period of this many cells."""
     axes = "xz" if len(cells) == 1 else "xyz"
     sizes = [*cells, 3]
     case = {

@@ -22,7 +22,7 @@ ADJUSTS = DENSITY * HEIGHT**2 / VISCOSITY
 
 
 def slip_length(part):
-    """Of a part of the height."""
+    """Slip length, m, for one that is this part of the height."""
     return {"kind": "navier-slip", "slip_length": part * HEIGHT}
 
 
@@ -79,7 +79,7 @@ def layer(contact, start, time, *, offset=0.0, cells=10, drive=0.0, weight=10.0,
 
 
 def slip_over_law(z, u, part, degree):
-    """u_w/(b du/dn) of the curve through all particles."""
+    """u_w/(b du/dn) of the curve that is fitted to all particles."""
     fit = np.polyfit(z, u, degree)
     return fit[-1] / (part * HEIGHT * fit[-2])
 

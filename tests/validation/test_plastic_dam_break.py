@@ -43,7 +43,7 @@ THIN_LENGTH = (9 * AREA**2 / (8 * SINK)) ** (1 / 3)
 
 
 def from_front(height: np.ndarray | float) -> np.ndarray | float:
-    """How far behind the front the deposit has a height, both m."""
+    """Distance behind the front, m, at which the deposit has a height, m."""
     return (height**2 - math.pi * SINK * height) / (2 * SINK)
 
 
@@ -81,7 +81,7 @@ def column(width: float, cell_size: float) -> mpmkit.Simulation:
 
 @pytest.mark.slow
 def test_dam_break_at_rest(validate):
-    """A column 0.15 m wide and 0.2 m high is let go at once, and stops after 5 s."""
+    """A column 0.15 m wide and 0.2 m high is released at once and has stopped after 5 s."""
     simulation = column(0.15, 0.01)
     times = np.linspace(0, 7, 29)
     p, length = simulation.particles, []

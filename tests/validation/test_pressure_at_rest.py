@@ -54,7 +54,8 @@ def tank(space, layers, dx=DX, side="slip", floor="slip", width=WIDTH, **case):
 
 
 def swing(simulation, exact, seconds):
-    """Largest error of the pressure away from surface and floor, over the largest, and largest speed."""
+    """Largest error of the pressure away from surface and floor, over the largest pressure; and largest
+    speed, m/s."""
     p, dx = simulation.particles, simulation.grid.cell_size
     worst = fastest = 0.0
     while simulation.time < seconds:
@@ -70,9 +71,10 @@ def swing(simulation, exact, seconds):
 @pytest.mark.parametrize("material", [WATER, CONCRETE], ids=lambda m: m["law"])
 @pytest.mark.parametrize("space", SIDES)
 def test_column_at_rest_has_its_pressure_at_every_moment(validate, space, material):
-    """p = ρ g (H - z) ± 2 %, not once its bounces have died out but from the start.
+    """p = ρ g (H - z) ± 2 % from the start, and not only when oscillations have died out.
 
-    A column that is let go without pressure swings between 0 and 2 ρ g H, with a period of 4 H/c = 50 ms.
+    The pressure of a column that starts without it oscillates between 0 and 2 ρ g H, with a period of 4 H/c =
+    50 ms.
     """
     dx = 0.025 if space == "3d" else DX
     simulation = tank(space, [(material, HEIGHT)], dx)
@@ -84,9 +86,10 @@ def test_column_at_rest_has_its_pressure_at_every_moment(validate, space, materi
 
 @pytest.mark.parametrize("heavy_below", [True, False])
 def test_two_layers_at_rest(validate, heavy_below):
-    """p is continuous across the interface, and its slope is ρ g of each layer. Either may lie below.
+    """p is continuous across the interface, and its slope is ρ g of each layer.
 
-    That the heavy one on top is no stable rest does not show yet: nothing has disturbed it.
+    Either layer may be the lower one. With the heavy layer on top the rest is unstable, but nothing has
+    disturbed it yet.
     """
     density = [2000.0, 1000.0] if heavy_below else [1000.0, 2000.0]
     half = HEIGHT / 2
@@ -105,7 +108,7 @@ def test_two_layers_at_rest(validate, heavy_below):
 
 
 def test_film_rests_on_its_slope_from_the_start(validate):
-    """Across the slope a film is at rest while it flows along it: p = ρ g_n (H - z) at once."""
+    """Across the slope a film is at rest while it flows along the slope: p = ρ g_n (H - z) from the start."""
     along, across = G * math.sin(0.3), G * math.cos(0.3)
     water, gravity = WATER | {"viscosity": 100.0}, [along, -across]
     simulation = tank("plane-strain", [(water, HEIGHT)], side="periodic", floor="stick", gravity=gravity)
@@ -184,7 +187,7 @@ def open_column(material, width, **case):
 
 @pytest.mark.parametrize("material", [WATER, CONCRETE], ids=["water", "concrete"])
 def test_what_begins_without_pressure_says_how_it_swings_and_does(material):
-    """The first mode of a column: nothing at first, all but twice its weight after half of 4 H/c."""
+    """First mode of a column: no pressure at first, nearly twice that of its weight after half of 4 H/c."""
     simulation = open_column(material, 0.6)
     (said,) = (sentence for sentence in simulation.remarks() if "begins without pressure" in sentence)
     p, sound = simulation.particles, simulation.particles.groups[0].sound_speed
@@ -202,7 +205,7 @@ def test_what_begins_without_pressure_says_how_it_swings_and_does(material):
     assert 1.6 < max(part) < 2.1
 
 
-def test_viscosity_that_ends_the_swing_is_told_and_what_has_none_is_not():
+def test_the_warning_gives_the_time_in_which_viscosity_damps_the_oscillation():
     """6 ρ h²/(π² mu) = 0.27 s for 200 Pa s: six periods of 0.049 s."""
     (said,) = (
         s for s in open_column(WATER | {"viscosity": 200.0}, 0.6).remarks() if "gravity acts suddenly" in s
@@ -272,7 +275,7 @@ def test_heavy_above_light_turns_over(validate):
 
 
 def test_light_above_heavy_does_not(validate):
-    """It swings about its level: at a speed of 20 mm/s no further than that speed over ω."""
+    """The interface oscillates about its level: at a speed of 20 mm/s by no more than that speed over ω."""
     _, heights, _, total, omega = overturning(heavy_below=True, seconds=0.35)
     validate("Light above heavy: interface, over speed/ω", np.abs(heights).max() / (0.02 / omega),
              below(1.02, "≤ 1"))  # fmt: skip

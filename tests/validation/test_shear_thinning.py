@@ -40,7 +40,7 @@ def test_sheet_that_thins_in_shear_slumps_at_its_rate(validate):
     """v_r = e r on a slip floor: 6 μ e = ρ g H/2 with μ = k (√12 e)^(n-1), away from the edge.
 
     e = [ρ g H/(12 k 12^((n-1)/2))]^(1/n), dH/dt = -2 e H. With n = 1/2 a sheet of half the height spreads
-    four times as slowly, not twice as a Newtonian one.
+    four times as slowly; a Newtonian sheet of half the height, only twice as slowly.
     """
     radius, height, k, n = 0.6, 0.1, 750.0, 0.5
     dx = height / 4

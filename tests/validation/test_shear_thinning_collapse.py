@@ -71,15 +71,15 @@ class Sheet:
         return WIDTH * (time / START) ** self.exponent
 
     def height(self, time: float) -> float:
-        """At x = 0."""
+        """Height at x = 0, m."""
         return AREA / (self.moment(0) * self.length(time))
 
     def mean_distance(self, time: float) -> float:
-        """Of the half with x > 0 from x = 0."""
+        """Mean distance from x = 0 of the half with x > 0, m."""
         return self.length(time) * self.moment(1) / self.moment(0)
 
     def time(self, mean_distance: float) -> float:
-        """When it has come so far."""
+        """Time, s, at which the sheet has this mean distance, m."""
         return START * (mean_distance / self.mean_distance(START)) ** (1 / self.exponent)
 
     def profile(self, x: np.ndarray, time: float) -> np.ndarray:
@@ -122,11 +122,12 @@ def column(sheet: Sheet, cells: int) -> mpmkit.Simulation:
     ],
 )
 def test_collapse_of_a_column_that_thins_in_shear(validate, n, cells, last, band):
-    """Its height, how far it is, and the consistency that would have taken it there in the same time.
+    """Height and mean distance of the sheet, and the consistency for which the formula gives the same times.
 
-    Times go as k^(1/n), and as the distance to the power of (2n + 3)/n, 8 with n = 1/2. So the time that it
-    took from where it was, which forgets how the collapse began, gives an apparent consistency. It is 10 %
-    too large on 4 cells, 7 % on 6 and 5 % on 12 (n = 0.7), which is 1 % of the distance.
+    Times are proportional to k^(1/n), and to the distance to the power of (2n + 3)/n, which is 8 with n =
+    1/2. The time from one distance to a larger one does not depend on how the collapse began, so it gives an
+    apparent consistency. This is 10 % too large on 4 cells, 7 % on 6 and 5 % on 12 (n = 0.7), which is 1 % of
+    the distance.
     """
     sheet = Sheet(n)
     simulation = column(sheet, cells)

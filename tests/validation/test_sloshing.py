@@ -95,7 +95,10 @@ def draw(validate, label, t, s):
     chart.line(label, t, s)
 
 
-@pytest.mark.parametrize("order", ["usl", pytest.param("usf", marks=pytest.mark.slow), "musl"])
+OTHERS = [pytest.param(order, marks=pytest.mark.slow) for order in ("usf", "musl")]
+
+
+@pytest.mark.parametrize("order", ["usl", *OTHERS])
 def test_standing_wave(validate, order):
     t, s, squared = slosh(10, **scheme(order=order))
     name = f"Sloshing, {order.upper()}, 10 cells deep: omega²"
@@ -105,16 +108,17 @@ def test_standing_wave(validate, order):
 
 
 def test_own_pressure_stiffens_the_wave():
-    """By more than 3 % at 10 cells; how that falls with the cells, and why, is in the slow test below."""
+    """By more than 3 % at 10 cells; the slow test below tells how this depends on the cell size, and why."""
     assert slosh(10, **PAPER)[2] / OMEGA**2 - 1 > 0.03
 
 
 @pytest.mark.slow
 def test_own_pressure_stiffens_the_wave_the_less_the_finer_the_cells(validate):
-    """Every particle its own volume and pressure: four constraints a cell that the hats cannot all meet.
+    """Each particle has its own volume and pressure: four constraints in a cell, more than linear functions
+    can satisfy.
 
-    A cell that bends, as it does under a wave, is then strained in volume, by about k dx, and the stiffness
-    of that is rho c²: omega² is too large by a part that falls as (c dx)². That is volumetric locking.
+    A cell that bends, as under a wave, then has a volumetric strain of about k dx, with the stiffness rho c²:
+    the relative error of omega² is proportional to (c dx)². This is volumetric locking.
     """
     excess = []
     for cells in (10, 20):
@@ -128,9 +132,10 @@ def test_own_pressure_stiffens_the_wave_the_less_the_finer_the_cells(validate):
 
 @pytest.mark.parametrize("periods", [3, pytest.param(14, marks=pytest.mark.slow)])
 def test_a_tank_that_swings_for_long_keeps_its_volume(validate, periods):
-    """A wave of a fifth of the depth, 14 periods long: J depends on the positions of particles.
+    """A wave with an amplitude of a fifth of the depth; J follows from the positions of particles.
 
-    With J that is drawn to its average alone it has sunk to 0.89 by then, and without splitting to 0.6.
+    If J is only moved towards its average, the water sinks to 0.89 of its depth in 14 periods, and without
+    splitting to 0.6.
     """
     simulation = tank(10, splitting=True)
     p = simulation.particles

@@ -97,7 +97,7 @@ def compare(validate, name: str, slump: Slump, curve: float, t500: float, final:
 
 
 def test_slump_at_10_mm(validate):
-    """900 particles at the start, within the figures that are asked of 5 mm."""
+    """900 particles at the start; the bands are those for cells of 5 mm."""
     slump = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(10)), until=2.0)
     compare(validate, "Slump, 10 mm", slump, curve=0.015, t500=0.04, final=0.01)
 
@@ -110,16 +110,17 @@ def test_slump_at_5_mm(validate):
 
 
 def test_slump_faster_than_the_concrete(validate):
-    """What 20 mm and a sound speed that follows the flow give up."""
+    """Accuracy with cells of 20 mm and a sound speed that follows the flow."""
     slump = Slump(mpmkit.load_case(ROOT / "cases/slump_fast.json"), until=4.0)
     compare(validate, "Slump, fast (20 mm, Mach 0.1)", slump, curve=0.025, t500=0.08, final=0.01)
 
 
 @pytest.mark.slow
 def test_what_has_stopped_on_a_stick_floor_stays(validate):
-    """Fault 78: without a redistribution it crept on for ever, from 0.440 m at 2 s to 0.449 m at 16 s.
+    """Concrete that has stopped does not creep.
 
-    It then grew by 0.15 % a second; 0.01 % are left. With cells of 20 mm 0.07 % are, and with `none` 0.22 %.
+    Without a redistribution its spread grew from 0.440 m at 2 s to 0.449 m at 16 s, by 0.15 % per second. Now
+    the growth is 0.01 % per second, with cells of 20 mm 0.07 %, and with `none` 0.22 %.
     """
     stick = [*cells(10), "grid.faces.z_min=stick", "until=6"]
     simulation = mpmkit.Simulation(mpmkit.load_case(ROOT / "cases/slump.json", stick))
@@ -141,7 +142,7 @@ def test_quarter_at_5_mm(validate):
 
 
 def test_quarter_model_agrees_with_axisymmetric(validate):
-    """Two spaces, two sets of kernels, one body: 20 mm; 8 particles per cell are enough while it falls."""
+    """Cells of 20 mm; 8 particles per cell are enough while the concrete falls."""
     round_body = Slump(mpmkit.load_case(ROOT / "cases/slump.json", cells(20)), until=0.3)
     few = ["bodies.0.particles_per_cell=8", "grid.cell_size=0.02"]
     domain = 'grid.domain={"x": [0, 0.36], "y": [0, 0.36], "z": [0, 0.32]}'
@@ -178,7 +179,7 @@ def test_update_orders_agree(validate, order):
 
 
 def test_own_pressure_locks_on_a_stick_floor(validate):
-    """What the averaging is for; the more incompressible, the less by own pressure moves at all."""
+    """Without averaging of pressures, a nearly incompressible material spreads much less: it locks."""
     stick = [*cells(20), "grid.faces.z_min=stick", 'bodies.0.material.sound_speed={"factor": 50}']
     averaged, own = (
         Slump(mpmkit.load_case(ROOT / "cases/slump.json", [*stick, f"scheme.volumetric={name}"]), until=0.5)
@@ -202,7 +203,7 @@ def test_the_settings_of_the_paper_follow_the_reference_while_it_flows(validate)
 
 @pytest.mark.slow
 def test_the_settings_of_the_paper_do_not_rest(validate):
-    """The regularised law creeps below its yield stress: reported for what it is, 5 mm."""
+    """The regularised law creeps below its yield stress; the report shows by how much, with cells of 5 mm."""
     slump = Slump(mpmkit.load_case(ROOT / "cases/slump_as_published.json"), until=4.0)
     time, spread, _ = reference()
     figure = validate.figure("slump_spread", "Slump: spread diameter", x="time (s)", y="spread diameter (mm)")
@@ -219,10 +220,10 @@ def test_the_settings_of_the_paper_do_not_rest(validate):
 
 
 def test_the_sound_speed_has_no_influence(validate):
-    """Stiffness beyond that of a nearly incompressible fluid changes the noise of the pressure only.
+    """A sound speed above that of a nearly incompressible fluid changes only the noise of the pressure.
 
-    The paper's factor is 50. A correction of J that came at once would be a pressure of ρ c² times as much:
-    with ``even`` it once took 4 % of the spread at 0.3 s here, and 7 % with cells of 10 mm.
+    The paper's factor is 50. A correction of J that acted at once would be a pressure of ρ c² times the
+    correction: with ``even`` it once reduced the spread at 0.3 s by 4 % here, and by 7 % with cells of 10 mm.
     """
     soft, stiff = (
         Slump(

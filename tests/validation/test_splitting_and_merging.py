@@ -1,4 +1,4 @@
-"""Splitting that ends, and merging: as many particles as needed, and the flow as it is without merging."""
+"""Splitting comes to an end, and merging limits the number of particles without a change of the flow."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WIDTH, HEIGHT, LENGTH = 0.56, 0.28, 1.5
 
 
 def most_particles(simulation: mpmkit.Simulation, until: float) -> int:
-    """Run; the largest number of particles on the way."""
+    """Run the simulation; the largest number of particles during the run."""
     most = len(simulation.particles)
     while simulation.time < until:
         simulation.advance(until - simulation.time)
@@ -30,7 +30,8 @@ def most_particles(simulation: mpmkit.Simulation, until: float) -> int:
 @pytest.mark.slow
 @pytest.mark.parametrize(("redistribution", "refinement"), [("none", "split-and-merge"), ("even", "split")])
 def test_what_is_let_go_in_a_tank_is_not_split_without_end(validate, redistribution, refinement):
-    """Splitting without end made 103,334 particles of 1,568 in two seconds, most boxes 8.6 by 0.08 mm."""
+    """Without a limit, splitting made 103,334 particles from 1,568 in two seconds, most with boxes of 8.6 by
+    0.08 mm."""
     material = bingham(10.0, 1.0, density=1900.0, sound_speed={"factor": 10})
     case = {
         "space": "plane-strain",

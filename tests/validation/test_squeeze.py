@@ -22,7 +22,7 @@ VISCOSITY, YIELD = 50.0, 500.0
 
 
 def radius(height, gap):
-    """Of the disc, m, which was ``RADIUS`` at the height it had at first."""
+    """Radius, m, at this gap, m, of a disc with ``RADIUS`` at the height, m, of the start."""
     return RADIUS * np.sqrt(height / gap)
 
 
@@ -53,7 +53,7 @@ def yielding(height, cells=8):
 
 
 def friction(r, h):
-    """2π τ0 R³/(3h), of the plates alone, N: lubrication."""
+    """Force from friction on the plates alone, N: 2π τ0 R³/(3h), from lubrication theory."""
     return 2 * math.pi * YIELD * r**3 / (3 * h)
 
 
@@ -73,10 +73,10 @@ def test_bingham_disc_is_squeezed_as_in_lubrication(validate, height):
 
 @pytest.mark.parametrize("height", [pytest.param(0.005, marks=pytest.mark.slow), 0.01])
 def test_bingham_disc_is_squeezed(validate, height):
-    """Friction on the plates and what it takes to stretch the disc, √3 π τ0 R².
+    """Force from friction on the plates and from the stretching of the disc, √3 π τ0 R².
 
-    That is the upper bound of limit analysis with the field v = (r/2, -z) v/h. The true force is a few per
-    cent below it: in plane strain Prandtl's solution has 3/4 of the second part.
+    This is the upper bound of limit analysis with the field v = (r/2, -z) v/h. The true force is a few per
+    cent less: in plane strain the second part of Prandtl's solution is 3/4 of that of this bound.
     """
     force, r, h = yielding(height)
     bound = friction(r, h) + math.sqrt(3) * math.pi * YIELD * r**2

@@ -1,8 +1,8 @@
-"""How long a step may be: acoustic dx/c, viscous 0.375 rho dx²/mu, and what the surface, the axis and the
-order of the step make of that.
+"""Longest stable step: acoustic dx/c, viscous 0.375 rho dx²/mu, and the influence of surface, axis and update
+order.
 
 On the grid alone a step is v ← v - dt A v (viscous) or a leapfrog with A (acoustic), stable for dt < 2/λ and
-dt < 2/√λ with λ the largest eigenvalue of A. Two particles an axis stand at the quarters of a cell.
+dt < 2/√λ with λ the largest eigenvalue of A. Two particles along each axis stand at the quarters of a cell.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def grid_limit(simulation, steepness=1.0) -> float:
 @pytest.mark.parametrize("shape", ["linear", "cpgimp"])
 @pytest.mark.parametrize("dimension", SCENES)
 def test_limits_inside_a_body(validate, dimension, shape):
-    """The same in any dimension: the steepest mode is plane."""
+    """The same in every dimension, since the steepest mode is plane."""
     space, per_cell, cells = SCENES[dimension]
     oil, gas, rubber = (grid_limit(block(space, m, per_cell, cells, shape=shape)) for m in (OIL, GAS, RUBBER))
     validate(f"Viscous limit, {dimension}: mu dt/(rho dx²)", VISCOUS * oil, close_to(VISCOUS, rel=1e-3))
@@ -51,7 +51,7 @@ def test_limits_inside_a_body(validate, dimension, shape):
 
 @pytest.mark.parametrize("per_cell", [2, 3])
 def test_limits_near_the_axis_are_smaller(validate, per_cell):
-    """With radially weighted functions by less than a hundredth."""
+    """With radially weighted functions, by less than 1 %."""
     for name, material in (("viscous", OIL), ("acoustic, fluid", GAS), ("acoustic, elastic", RUBBER)):
         found = grid_limit(block("axisymmetric", material, [per_cell, per_cell]))
         validate(f"Limit in a cylinder about its axis, {name}: of that inside", found, below(1.0, "< 1"))
@@ -60,10 +60,11 @@ def test_limits_near_the_axis_are_smaller(validate, per_cell):
 
 @pytest.mark.parametrize("filled", [0.1, 0.03, 0.01])
 def test_limit_of_a_nearly_empty_node_linear(validate, filled):
-    """It has 4 ε of the viscous limit and 2 √ε of the acoustic one, and so none.
+    """The limits are 4 ε of the viscous and 2 √ε of the acoustic one, so that no step is short enough for all
+    ε.
 
-    The last particle, of volume V, gives a node ε of its mass, ε rho V, but its stress as to any other:
-    force V σ/dx with σ = 4/3 mu v/dx. So λ = 4 mu/(3 ε rho dx²), or c²/(ε dx²).
+    The last particle, of volume V, gives a node ε of its mass, ε rho V, but as much force as any other node:
+    V σ/dx with σ = 4/3 mu v/dx. So λ = 4 mu/(3 ε rho dx²), or c²/(ε dx²).
     """
     viscous = grid_limit(free_bar(OIL, "linear", filled), 0.25 / filled)
     acoustic = grid_limit(free_bar(GAS, "linear", filled), 0.25 / filled)

@@ -1,4 +1,4 @@
-"""A block on a floor that is tilted: by gravity and inertia as the floor sees them, and by the floor."""
+"""A block on a floor that tilts: by forces in the frame of the floor, and by a moving wall."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ AS_THE_FLOOR_SEES_IT = {
 
 
 def slid(changes: dict, angle: float) -> tuple[float, float, float]:
-    """Place along the floor, m, speed along it, m/s, and height, m, of the centre of mass at the end."""
+    """Position along the floor, m, speed along it, m/s, and height, m, of the centre of mass at the end."""
     simulation = Simulation(parse_case(copy.deepcopy(SCENE) | changes))
     advance_to(simulation, LATE)
     p, along = simulation.particles, np.array([math.cos(angle), math.sin(angle)])

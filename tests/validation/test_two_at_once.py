@@ -1,4 +1,4 @@
-"""What two materials, or a law with a state, must keep while the program changes their particles."""
+"""Two materials in one run, and a law with state variables: splitting of particles and sound speeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Volumetric treatments: no energy out of nothing, in any space, with any shape function and update order."""
+"""Volumetric treatments create no energy, in any space, with any shape function and update order."""
 
 from __future__ import annotations
 
@@ -60,9 +60,10 @@ def block(space, cells=6, faces=FACES, **scheme):
 @pytest.mark.parametrize("shape", REGISTRY.of_kind("shape"))
 @pytest.mark.parametrize("space", FACES)
 def test_power_of_the_pressure_is_what_the_compressive_energy_loses(validate, space, shape, volumetric):
-    """Σ f·v over the nodes = Σ V p θ̄ = -dE/dt for any pressure, any velocity, any place of the particles.
+    """Σ f·v over the nodes = Σ V p θ̄ = -dE/dt for any pressure, velocity and position of the particles.
 
-    Walls are part of it: what folds the ghosts' force and what fills their velocity are transposes.
+    This holds at walls too: the operation that folds the forces of ghost nodes is the transpose of the one
+    that fills their velocities.
     """
     rng = np.random.default_rng(2)
     simulation = block(space, shape=shape, volumetric=volumetric, velocity="flip")
@@ -109,7 +110,8 @@ def test_relaxation_keeps_the_volume_and_only_loses_energy(space):
 
 
 def test_relaxation_leaves_two_fluids_at_one_pressure(validate):
-    """Sound speeds differ, and so do the volume ratios of one pressure: each is averaged by itself."""
+    """The fluids have different sound speeds, and so different volume ratios at one pressure; each is
+    averaged by itself."""
     case = {
         "space": "plane-strain",
         "until": 1.0,
@@ -151,9 +153,11 @@ def energy(simulation):
     ],
 )
 def test_energy_of_a_swinging_block(validate, space, order):
-    """An inviscid block that swings, held by a plane of symmetry: the energy strays by the order of the step.
+    """The energy of an inviscid block that oscillates at a plane of symmetry has an error of the order of the
+    step.
 
-    With USL, and any treatment, of its root: its stress comes from nodes at the surface, nearly empty ones.
+    With USL and any treatment the error is of the order of the root of the step: its stress comes from nodes
+    at the surface, some of which are nearly empty.
     """
     strays = []
     for fraction in (0.1, 0.05):
@@ -179,7 +183,7 @@ def test_energy_of_a_swinging_block(validate, space, order):
 @pytest.mark.parametrize("volumetric", REGISTRY.of_kind("volumetric"))
 @pytest.mark.parametrize("space", ["plane-strain", "axisymmetric"])
 def test_the_axis_lowers_no_limit(validate, space, volumetric):
-    """Noise in a block, at 0.9 of dx/c: it grows no more around an axis of symmetry than beside a wall."""
+    """Noise with a step of 0.9 dx/c grows no more around an axis of symmetry than beside a wall."""
     simulation = block(
         space, order="musl", volumetric=volumetric, velocity="flip", time_step={"fraction": 0.9}
     )

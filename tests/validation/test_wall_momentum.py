@@ -1,4 +1,4 @@
-"""The impulses of a wall are all that the material got."""
+"""The impulses of walls account for the momentum of the material."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PUSHED = {
 
 
 def momentum_off(space, order, update, contact, moving, redistribution="none"):
-    """|Σ m v - Σ m v₀ - M g t - Σ λ| over Σ |λ|: what the particles have too much."""
+    """|Σ m v - Σ m v₀ - M g t - Σ λ| over Σ |λ|: the error of the particles' momentum."""
     domain, shape, surface, velocity = PUSHED[space]
     up = {"kind": "velocity", "velocity": [0.0] * (len(velocity) - 1) + [0.3]}
     simulation = mpmkit.Simulation(
@@ -68,7 +68,7 @@ def momentum_off(space, order, update, contact, moving, redistribution="none"):
 @pytest.mark.parametrize("contact", ["slip", "stick", coulomb(0.3)], ids=str)
 @pytest.mark.parametrize("space", PUSHED)
 def test_walls_account_for_all_momentum(validate, space, contact):
-    """The impulses that are reported are all that the material got, in every order and velocity update."""
+    """Reported impulses and gravity give the whole momentum, in every order and velocity update."""
     pairs = [(order, update) for order in ORDERS for update in UPDATES]
     if space == "3d":
         pairs = pairs[:: 5 if contact != "slip" else 2]

@@ -1,4 +1,4 @@
-"""Scenes whose particles lie in a lattice of their own: turned with a wall, or within a curve."""
+"""Scenes whose particles lie on a lattice turned with a wall, or inside a curve."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What scenes of walls at any place and angle share."""
+"""Common functions for scenes with walls at any position and angle."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def _positive_root(a: float, apex: float) -> float:
 def slump_of_cylinder(
     yield_stress: ArrayLike, density: float, height: float, criterion: float = TRESCA
 ) -> np.ndarray:
-    """The same for a cylinder, of whatever radius: Pashias, Boger, Summers & Glenister (1996)."""
+    """The same for a cylinder, of any radius: Pashias, Boger, Summers & Glenister (1996)."""
     depth = np.minimum(criterion * np.asarray(yield_stress, dtype=float) / (density * GRAVITY * height), 1.0)
     return height * (1 - depth * (1 - np.log(depth)))
 

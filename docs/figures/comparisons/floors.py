@@ -20,7 +20,7 @@ def main() -> None:
         plot.plot(spread.time, 1e3 * spread, color=color, lw=1.2, label=label)
     plot.axhline(500, color="grey", lw=0.8, ls=":")
     plot.set(xlim=(0, 2.5), ylim=(190, 640))
-    say(plot, "The slump test's concrete, by its floor", "time / s", "spread diameter / mm")
+    say(plot, "Concrete of the slump test on five floors", "time / s", "spread diameter / mm")
     plot.legend(frameon=False, fontsize=7, loc="lower right")
     save(sheet, "floors")
 

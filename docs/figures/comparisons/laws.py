@@ -50,7 +50,7 @@ def main() -> None:
         times, spread = sheet_that_creeps(start, m)
         rates.plot(times, 1e3 * np.gradient(spread, times), "k:", lw=1, label="uniform sheet" * (m == 1000))
     rates.set(yscale="log", xlim=(0.5, 6), ylim=(0.02, 1e4))
-    say(rates, "What goes on at rest", "time / s", "rate of the spread / (mm/s)")
+    say(rates, "Creep after the slump", "time / s", "rate of the spread / (mm/s)")
 
     for plot, where in ((curves, "upper left"), (spreads, "lower right"), (rates, "upper right")):
         plot.legend(frameon=False, fontsize=7, loc=where)

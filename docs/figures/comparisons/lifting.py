@@ -14,7 +14,7 @@ FLOORS = {"slip": "Slip floor", "stick": "Stick floor"}
 
 def main() -> None:
     (runs,) = data(lifting=["spread_diameter", "t500", "final_spread"])
-    sheet, plots = panels(2, "The slump test's concrete, by how fast the mould is lifted")
+    sheet, plots = panels(2, "Concrete of the slump test, for several lifting speeds")
     for plot, (floor, title) in zip(plots, FLOORS.items(), strict=True):
         for lift, color in LIFTS.items():
             spread = runs.spread_diameter.sel(floor=floor, lift=lift).dropna("time")

@@ -37,7 +37,7 @@ def main() -> None:
         for order in ("USF", "MUSL"):
             apart = 1e3 * (runs.sel(order=order) - runs.sel(order="USL"))
             spread.plot(slump.time, apart, lw=width, label=f"{order}, step {step}", **ORDERS[order])
-    say(spread, "Slump, 10 mm", "time / s", "spread less that of USL / mm")
+    say(spread, "Slump, 10 mm", "time / s", "spread minus that of USL / mm")
     spread.set_ylim(-0.15, 0.8)
     spread.legend(frameon=False, fontsize=8, ncols=2, loc="upper left")
 
@@ -51,7 +51,7 @@ def main() -> None:
         energy.plot(
             times, np.exp(-lost * (times - times[0])), "k", lw=0.8, label=f"USL, theory, {end}", **style
         )
-    say(energy, "Vibrating bar, 13 cells", "time / s", "energy, mean of a period, over the first")
+    say(energy, "Vibrating bar, 13 cells", "time / s", "mean energy of a period over the first")
     energy.legend(frameon=False, fontsize=7, loc="lower left")
 
     for order, style in ORDERS.items():

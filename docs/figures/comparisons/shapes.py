@@ -31,7 +31,7 @@ def main() -> None:
         )
     last(spread, runs.sel(step="0.1", shape="linear", order="USL"), "linear, USL, step 0.1", "#E69F00")
     spread.set(xlim=(0, 1.5), ylim=(180, 590))
-    say(spread, "Slump, 10 mm, 4 particles a cell", "time / s", "spread diameter / mm")
+    say(spread, "Slump, 10 mm, 4 particles per cell", "time / s", "spread diameter / mm")
 
     for cells, line in (("20 mm", "--"), ("10 mm", "-")):
         for shape, style in SHAPES.items():
@@ -40,7 +40,7 @@ def main() -> None:
             t500.plot(counts, found, line, marker="o", ms=3, label=f"{shape}, {cells}", **style)
     t500.axhspan(0.606, 0.612, color="k", alpha=0.2, lw=0, label="finite elements")
     t500.set(ylim=(0.6, 0.68), xticks=counts)
-    say(t500, "Slump, USF", "particles a cell", "T500 / s")
+    say(t500, "Slump, USF", "particles per cell", "T500 / s")
 
     total = (bar.kinetic_energy + bar.strain_energy).sel(cells="50 cells, 2 particles")
     for_each(energy, total / total[..., 0], once=20)

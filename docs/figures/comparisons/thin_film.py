@@ -18,7 +18,7 @@ WIDTH, CELLS = 0.3, 400
 
 
 def t500_film(yield_stress: float, density: float) -> float:
-    """Time to a spread of 500 mm over the plastic viscosity, 1/Pa, of the cone let go."""
+    """Time to a spread of 500 mm over the plastic viscosity, 1/Pa, of a cone released at once."""
     radius = (np.arange(CELLS) + 0.5) * WIDTH / CELLS
     height = HEIGHT * np.clip((BOTTOM - radius) / (BOTTOM - TOP), 0, 1)
     height *= VOLUME / np.sum(2 * np.pi * radius * height * WIDTH / CELLS)

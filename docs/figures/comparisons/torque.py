@@ -48,7 +48,7 @@ def main() -> None:
     plot.axhline(whole, color="grey", lw=0.8, ls=":")
     plot.text(0.03, whole, "all fluid is sheared above", fontsize=7, va="bottom", color="grey")
     plot.set(xlim=(0, WIDEST), ylim=(0, None))
-    say(plot, "Coaxial cylinders, 100 Pa and 20 Pa s", "turns per second / (1/s)", "torque / (N m)")
+    say(plot, "Coaxial cylinders, 100 Pa and 20 Pa s", "rotation rate / (1/s)", "torque / (N m)")
     plot.legend(frameon=False, fontsize=7, loc="lower right")
     save(sheet, "torque")
 
@@ -59,7 +59,7 @@ def exact(given: dict[str, float], turns: np.ndarray) -> np.ndarray:
 
 
 def steady(torque) -> float:
-    """Mean of the last twentieth of a run; the torque swings with the sound."""
+    """Mean of the last twentieth of a run; the torque oscillates with sound waves."""
     values = torque.dropna("time").values
     return float(values[-max(1, len(values) // 20) :].mean())
 

@@ -63,7 +63,7 @@ def main() -> None:
     points(cylinder, "final_slump", "slip", BLUE, slip_slowly=slow.sel(body="cylinder"))
     points(cylinder, "final_slump", "stick", RED, stick_slowly=slow.sel(body="cylinder"))
 
-    titles = ("Slump, slip floor", "Slump, stick floor", "Spread, let go at once", "Slump of a cylinder")
+    titles = ("Slump, slip floor", "Slump, stick floor", "Spread, released at once", "Slump of a cylinder")
     for plot, title in zip((slip, stick, spread, cylinder), titles, strict=True):
         say(plot, title, "yield stress / Pa", ("spread diameter" if plot is spread else "slump") + " / mm")
         plot.set(xscale="log", xlim=(10, 5000))

@@ -117,7 +117,7 @@ def draw(data: xr.Dataset) -> Figure:
         axes.set_yticks([0.05, 0.1, 0.2, 0.4, 0.7, 1, 2], ["0.05", "0.1", "0.2", "0.4", "0.7", "1", "2"])
         axes.minorticks_off()
     for axes in panels[1]:
-        axes.set_xlabel("particles an axis in a cell")
+        axes.set_xlabel("particles per cell and axis")
     for axes in panels[:, 0]:
         axes.set_ylabel("largest stable step / (dx/c)")
     handles = [axes.plot([], [], "s", color=c, label=f"{o.upper()}, cpGIMP")[0] for o, c in COLOURS.items()]

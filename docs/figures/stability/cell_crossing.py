@@ -51,7 +51,7 @@ def measure() -> xr.Dataset:
         {
             "shape": SHAPES,
             "cells": ("cells", CELLS, {"long_name": "cells of the bar"}),
-            "per_cell": ("per_cell", PER_CELL, {"long_name": "particles a cell"}),
+            "per_cell": ("per_cell", PER_CELL, {"long_name": "particles per cell"}),
             "amplitude": ("amplitude", AMPLITUDES, {"units": "1", "long_name": "amplitude, in cells"}),
         },
     )
@@ -82,7 +82,7 @@ def draw_cells(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", ylim=(0.003, 1.6))
     axes.set(xlabel="amplitude / cell", ylabel="largest error of displacement / amplitude")
     axes.legend(fontsize=7, frameon=False, loc="upper left", ncols=2)
-    axes.set_title("Two particles a cell, USF", fontsize=9, loc="left")
+    axes.set_title("Two particles per cell, USF", fontsize=9, loc="left")
 
 
 def draw_map(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
@@ -95,7 +95,7 @@ def draw_map(figure: Figure, axes: Axes, data: xr.Dataset) -> None:
     for row, n in zip(rows, PER_CELL, strict=True):
         label = "1/(2 n): the first particle crosses" if row == 0 else None
         axes.plot([0.5 / n] * 2, [row - 0.5, row + 0.5], color="#D55E00", linewidth=2, label=label)
-    axes.set(xscale="log", xlabel="amplitude / cell", ylabel="particles n a cell")
+    axes.set(xscale="log", xlabel="amplitude / cell", ylabel="particles per cell, n")
     axes.set_yticks(rows, map(str, PER_CELL))
     axes.grid(visible=False)
     bar = figure.colorbar(mesh, ax=axes, label="error, linear / cpGIMP")

@@ -84,7 +84,7 @@ def measure() -> xarray.Dataset:
 
 
 def draw(data: xarray.Dataset) -> Figure:
-    figure, panels = sheet("Energy that is made (▲) or lost (▼), by time step and cells", 3, width=11.2)
+    figure, panels = sheet("Energy created (▲) or lost (▼), by time step and cells", 3, width=11.2)
     for axes, (scene, (*_, cells)) in zip(panels, SCENES.items(), strict=True):
         for grid, number, dashes in zip(data.grid.values, cells, ("-", ":"), strict=True):
             for order, colour in ORDERS.items():
@@ -102,7 +102,7 @@ def draw(data: xarray.Dataset) -> Figure:
         axes.set(xscale="log", yscale="log", xlim=(0.0025, 1), ylim=(3e-7, 0.4), xlabel="time step over Δx/c")
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_title(TITLES[scene].format(*cells), fontsize=9)
-    panels[0].set_ylabel("change of the mean energy, part of it")
+    panels[0].set_ylabel("relative change of the mean energy")
     panels[2].plot([], [], "-", color=GREY, label="ω × life of the stress = 1")
     panels[1].plot(FRACTIONS[2:7], 0.6 * FRACTIONS[2:7], "--", color=BLACK, lw=1, label="as the step")
     panels[0].plot([], [], "-", color=BLACK, lw=1.4, label="USL, theory")

@@ -88,7 +88,7 @@ def measure() -> xarray.Dataset:
         },
         {
             "pull": list(PULLS),
-            "count": ("count", COUNTS, {"units": "1", "long_name": "particles a cell"}),
+            "count": ("count", COUNTS, {"units": "1", "long_name": "particles per cell"}),
             "rule": list(RULES),
             "splitting": ["off", "on"],
             "cell": ("cell", list(CELLS), {"units": "mm", "long_name": "side of a cell"}),
@@ -97,7 +97,7 @@ def measure() -> xarray.Dataset:
 
 
 def draw(data: xarray.Dataset) -> Figure:
-    figure, (left, right) = sheet("Numerical fracture: what holds, and how far", 2)
+    figure, (left, right) = sheet("Numerical fracture: stretch at which it begins, and density", 2)
     draw_strip(left, data)
     draw_slump(right, data)
     return figure
@@ -120,7 +120,7 @@ def draw_strip(axes: Axes, data: xarray.Dataset) -> None:
     axes.plot([], [], "o", color=BLACK, mfc="white", label="pulled slowly")
     axes.plot([], [], color=BLACK, lw=1.2, label="theory")
     axes.set(xlim=(0.8, 4.2), ylim=(0.8, 14.5), xticks=COUNTS, yticks=range(2, 13, 2))
-    axes.set(xlabel="particles a cell along the strip", ylabel="stretch at which it tears")
+    axes.set(xlabel="particles per cell along the strip", ylabel="stretch at which the strip tears")
     axes.set_title("Elastic strip, pulled by a block that flies off", fontsize=9)
     axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper left")
 

@@ -46,7 +46,7 @@ def measure() -> xarray.Dataset:
     found.spread.attrs = {"units": "m", "long_name": "spread at 1 s"}
     found.reference.attrs = {"units": "m", "long_name": "spread at 1 s, cells of 10 mm, averaged volumes"}
     found.sound.attrs = {"units": "1", "long_name": "sound speed over √(2 g h)"}
-    found.particles.attrs = {"units": "1", "long_name": "particles of a cell at the start"}
+    found.particles.attrs = {"units": "1", "long_name": "particles per cell at the start"}
     return found
 
 
@@ -58,7 +58,7 @@ def draw(data: xarray.Dataset) -> Figure:
         for particles, colour in zip(data.particles.values, (GREY, ORANGE, GREEN, BLUE), strict=True):
             for volumes, style in (("averaged", "o-"), ("own", "s--")):
                 at = data.spread.sel(floor=floor, volumes=volumes, particles=particles) / reference
-                label = f"{particles} a cell, {volumes}"
+                label = f"{particles} per cell, {volumes}"
                 axes.plot(sound, at, style, color=colour, mfc="white", lw=1.2, ms=5, label=label)
         axes.set(xscale="log", xticks=[2, 5, 10, 20, 50], xticklabels=["2", "5", "10", "20", "50"])
         axes.minorticks_off()
@@ -68,7 +68,7 @@ def draw(data: xarray.Dataset) -> Figure:
     factor = np.geomspace(2, 50, 100)
     held = BEFORE / data.reference.sel(floor="stick").item()
     stick.plot(factor, held * (1 + 1 / factor**2), color=VERMILION, lw=1.5, label="locked, theory")
-    stick.axhline(held, color=BLACK, lw=0.8, ls=":", label="the cone before")
+    stick.axhline(held, color=BLACK, lw=0.8, ls=":", label="initial cone")
     stick.set(ylim=(0.4, 1.45), ylabel="spread over the reference")
     slip.set(ylim=(0.95, 1.02))
     stick.legend(frameon=False, fontsize=8, ncols=2, loc="upper right")

@@ -1,4 +1,4 @@
-"""Draw docs/images/stability/long_shear.png: a film and a tank that are sheared on and on.
+"""Draw docs/images/stability/long_shear.png: a film and a tank with a large shear.
 
     python docs/figures/stability/long_shear.py [--draw]
 
@@ -92,7 +92,7 @@ def measure() -> xarray.Dataset:
 
 def draw(data: xarray.Dataset) -> Figure:
     figure, (speeds, densities, heights) = sheet(
-        f"Long shear: a Bingham film on {ANGLE:g}°, {CELLS} cells thick, and a block let go in a closed tank",
+        f"Long shear: a Bingham film on {ANGLE:g}°, {CELLS} cells thick; a block released in a closed tank",
         3,
         width=12.6,
     )

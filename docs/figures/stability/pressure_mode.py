@@ -97,7 +97,7 @@ def measure() -> xarray.Dataset:
 
 
 def draw(data: xarray.Dataset) -> Figure:
-    figure, (left, right) = sheet("What averaged volumes do not see", 2, width=11.2)
+    figure, (left, right) = sheet("Variations of J that averaged volumes do not see", 2, width=11.2)
     draw_slump(left, data)
     for (name, (_, dashes, _)), colour in zip(TANKS.items(), TANK_COLOURS, strict=True):
         right.plot(data.period, data.height.sel(tank=name), dashes, color=colour, lw=1.4, label=name)
@@ -107,7 +107,7 @@ def draw(data: xarray.Dataset) -> Figure:
         xlabel="periods",
         ylabel="height of the centre of mass over that at rest",
     )
-    right.set_title("Height of a fluid that swings in a tank", fontsize=9)
+    right.set_title("Height of an oscillating fluid in a tank", fontsize=9)
     right.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 
@@ -125,7 +125,7 @@ def draw_slump(axes: Axes, data: xarray.Dataset) -> None:
         xlim=(0, 20),
         ylim=(1e-3, 2),
         xlabel="cells crossed",
-        ylabel="J less its average, root mean square / %",
+        ylabel="J minus its average, RMS / %",
     )
     axes.set_title("Slump, cells of 10 mm", fontsize=9)
     axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper left")

@@ -41,7 +41,7 @@ def film(scheme: dict) -> mpmkit.Simulation:
 
 
 def tank(scheme: dict) -> mpmkit.Simulation:
-    """A block that is let go at one end of a closed tank with slip walls."""
+    """A block that is released at one end of a closed tank with slip walls."""
     return mpmkit.Simulation(
         mpmkit.parse_case(
             {

@@ -90,7 +90,7 @@ def measure() -> xr.Dataset:
             "shape": list(SHAPES),
             "order": ORDERS,
             "reach": ("reach", REACH, {"units": "1", "long_name": "reach over the node, in cells"}),
-            "per_cell": ("per_cell", PER_CELL, {"long_name": "particles a cell, each 1/n of it wide"}),
+            "per_cell": ("per_cell", PER_CELL, {"long_name": "particles per cell, each 1/n of it wide"}),
         },
     )
 
@@ -115,7 +115,7 @@ def draw_reach(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", ylim=(8e-4, 4))
     axes.set(xlabel="reach e over the next node / cell", ylabel="largest stable step / (dx/c)")
     axes.legend(fontsize=7, frameon=False, loc="lower right")
-    axes.set_title("A free end, two particles a cell", fontsize=9, loc="left")
+    axes.set_title("A free end, two particles per cell", fontsize=9, loc="left")
 
 
 def draw_width(axes: Axes, data: xr.Dataset) -> None:

@@ -1,4 +1,4 @@
-"""A tank in which an inviscid fluid swings in its first mode, to and fro."""
+"""A tank in which an inviscid fluid sloshes in its first mode."""
 
 import math
 from collections.abc import Iterator

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...case.model import Material
+from ...case.material import Material
 from ...contracts import Plugin
 from ...errors import GuardStop
 from ...registry.blame import blaming_plugins

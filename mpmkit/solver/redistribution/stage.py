@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...case.model import Scheme
+from ...case.scheme import Scheme
 from ...contracts import redistribution as contract
 from ...errors import PluginFault
 from ...kernels import domains, shifts, sums, volumes

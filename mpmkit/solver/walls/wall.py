@@ -152,7 +152,7 @@ class Wall:
         w.see_faces()
         count = wall_contact.at_wall_velocities(
             w.window.nodes, w.at_wall, w.at, w.d, w.normal, w.index, w.weight, w.free, w.acting, w.share,
-            w.stiffness, w.velocity, w.inner,
+            w.inverse_mass, w.velocity, w.inner,
         )  # fmt: skip
         self._acting = w.acting[:count]
         self._after = w.velocity[:count]
@@ -189,16 +189,16 @@ class Wall:
     def _give(self, before: np.ndarray, after: np.ndarray, solved: bool) -> None:
         w = self.near
         wall_contact.give(
-            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, before,
-            after, solved, w.given, w.held_at,
+            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.inverse_mass,
+            before, after, solved, w.given, w.held_at,
         )  # fmt: skip
 
     def _sweep(self, after: np.ndarray, backwards: bool, solved: bool) -> None:
         w = self.near
         pulls = self.pulls or not solved  # nodes in contact are held until the next decision
         wall_contact.sweep(
-            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.stiffness, after,
-            self.odd, pulls, backwards, solved, w.given, w.held_at,
+            w.window.nodes, self._acting, w.at, w.normal, w.index, w.free, w.share, w.inverse_mass,
+            after, self.odd, pulls, backwards, solved, w.given, w.held_at,
         )  # fmt: skip
 
     def _shared(self, acting: np.ndarray, velocity: np.ndarray, touched: np.ndarray) -> np.ndarray:
@@ -219,8 +219,8 @@ class Wall:
             self._sweep(after, turn % 2 == 0, True)
         impulse = self.near.given[: len(acting)].copy()
         nodes[rows] = kept
-        resistance = (normal * normal * w.stiffness[: len(acting)]).sum(axis=1)
-        alone = np.divide(-away, resistance, out=np.zeros(len(acting)), where=resistance > 0)
+        inverse_mass = self._inverse_mass_along_normal(acting)
+        alone = np.divide(-away, inverse_mass, out=np.zeros(len(acting)), where=inverse_mass > 0)
         return (impulse * normal).sum(axis=1) - alone
 
     def _pressed(self, acting: np.ndarray, touched: np.ndarray, dt: float | None) -> np.ndarray:
@@ -230,23 +230,27 @@ class Wall:
         velocity = self.near.velocity[: len(acting)]
         return self.near.pressed(acting, dt) + self._shared(acting, velocity, touched)
 
+    def _inverse_mass_along_normal(self, acting: np.ndarray) -> np.ndarray:
+        """Change of the normal velocity of the material per normal impulse at each point, 1/kg, ``(k,)``."""
+        normal = self.near.normal[acting]
+        return (normal * normal * self.near.inverse_mass[: len(acting)]).sum(axis=1)
+
     def _given(self, count: int, dt: float | None) -> ContactNodes:
         w = self.near
         acting = w.acting[:count]
-        normal = w.normal[acting]
-        resistance = (normal * normal * w.stiffness[:count]).sum(axis=1)
-        mass = np.divide(1.0, resistance, out=np.zeros(count), where=resistance > 0)
+        inverse_mass = self._inverse_mass_along_normal(acting)
+        mass = np.divide(1.0, inverse_mass, out=np.zeros(count), where=inverse_mass > 0)
         at = w.at[acting]
         touched = w.touched[at] > 0
         return ContactNodes(
             position=w.place[acting],
-            normal=normal,
+            normal=w.normal[acting],
             wall_velocity=w.wall_velocity[acting],
             mass=mass,
             velocity=w.velocity[:count],
             inner=w.inner[:count],
             depth=(w.d[acting] + 1) * self.grid.cell_size,
-            pressed=self._pressed(acting, touched, dt) * resistance,
+            pressed=self._pressed(acting, touched, dt) * inverse_mass,
             touched=touched,
             memory={name: array[at] for name, array in w.memory.items()},
             time=self._time,

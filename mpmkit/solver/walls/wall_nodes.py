@@ -15,16 +15,19 @@ from ..grid import Grid, Window
 
 LAG = 0.02
 """Cells that a wall may move before its nodes are classified again; its velocity is always current."""
-UP, STANDS, FACING = 2.0, 1e-3, 0.9
-"""Cells from a face at which a wall that stands on it is looked at; cells from the face up to which it stands
-there; and cosine of the angle between its normal and that of the face from which the two are against each
-other."""
+UP = 2.0
+"""Distance from a face, in cells, at which the side of a wall that stands on the face is evaluated."""
+STANDS = 1e-3
+"""Largest distance from a face, in cells, of a point of a wall that counts as on the face."""
+FACING = 0.9
+"""A wall and a face of the grid are opposite if minus the cosine of the angle between their normals exceeds
+this."""
 MARGIN = 1.0
 """Cells that a wall may move before the nodes near it are searched again."""
 
 
 class WallNodes:
-    """The nodes of one window near one wall, and the data for them. Lengths are in cells, positions in m."""
+    """The nodes of one window near one wall, and their data. Lengths are in cells, positions in m."""
 
     def __init__(self, contact: Contact, grid: Grid, window: Window, active: np.ndarray) -> None:
         """
@@ -87,7 +90,7 @@ class WallNodes:
         self.share = np.zeros((k, 1 + (1 << dim)))
         self.held = np.zeros((k, 1 + 2 * dim))
         self.pair = np.zeros((k, 2))
-        self.stiffness, self.velocity, self.inner, self.given, self.impulse, self.mapped = np.zeros(
+        self.inverse_mass, self.velocity, self.inner, self.given, self.impulse, self.mapped = np.zeros(
             (6, k, dim)
         )
         self.held_at = np.zeros(k, dtype=np.uint8)

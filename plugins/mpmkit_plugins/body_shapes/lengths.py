@@ -1,4 +1,4 @@
-"""What the shapes share: sentences about coordinates that a space does not have, and distances."""
+"""Functions for several shapes: sentences about wrong coordinates, and distances."""
 
 from __future__ import annotations
 

@@ -8,10 +8,10 @@ from .slip import Slip
 
 
 class Coulomb(Slip):
-    """As ``slip``, and the drag takes at most μ times the push from the slip, and never turns it round:
+    """As ``slip``, with friction: it reduces the slip velocity u_t by at most μ times the push, to 0 at most.
 
-    u_t ← (1 - min(1, μ push / |u_t|)) u_t, with the push the normal velocity that the wall takes up, here, by
-    what is mirrored beyond it, and with its neighbours.
+    u_t ← (1 - min(1, μ push / |u_t|)) u_t. The push is the change of the normal velocity by the wall at this
+    node, including the impulses of the mirrored material behind the wall and of neighbouring nodes.
     """
 
     name = "coulomb"

@@ -1,4 +1,4 @@
-"""A wall along which material slips in proportion to the shear there."""
+"""A wall along which material slips in proportion to the shear rate at the wall."""
 
 from typing import Any
 
@@ -11,11 +11,11 @@ from .slip import Slip
 
 
 class NavierSlip(Slip):
-    """u_t = b ∂u_t/∂n at the wall, with b the slip length: of a linear profile, u_t = u_t(y) b / (b + y).
+    """u_t = b ∂u_t/∂n at the wall, with the slip length b. For a linear profile, u_t = u_t(y) b / (b + y).
 
-    u_t(y) is that of the material at the depth y. Along the normal it is as ``slip``. The drag draws the slip
-    towards that value, and ends where it would speed the material up: a wall only brakes. b = 0 holds the
-    material as ``stick`` does, a large b tends to ``slip``.
+    u_t(y) is the tangential velocity of the material at the depth y. Along the normal the contact is that of
+    ``slip``. Friction moves the slip velocity towards that value, but never makes the material faster. With
+    b = 0 the material sticks as with ``stick``; a large b tends to ``slip``.
     """
 
     name = "navier-slip"

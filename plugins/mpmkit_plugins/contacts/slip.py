@@ -4,7 +4,7 @@ from mpmkit.contracts import Contact, ContactNodes, StateVariable, hookimpl
 
 
 class Slip(Contact):
-    """v_n ≥ w_n: the wall takes up what approaches it, lets go of what leaves, and does not drag.
+    """v_n ≥ w_n: the wall stops material that approaches it, lets material leave, and has no friction.
 
     Whether it pushes at a node is decided once a step, after the momentum equation. Until the next decision
     the normal velocity is held, whatever its sign: a contact that opened as soon as the mapped velocity

@@ -6,7 +6,7 @@ from mpmkit.contracts import Contact, ContactNodes, StateVariable, hookimpl
 
 
 class Stick(Contact):
-    """v = w at every node that material has reached; with ``releases``, only as long as it does not leave.
+    """v = w at every node that material touches; with ``releases``, only until the material leaves.
 
     Whether a wall that releases holds a node is decided once a step, as for ``slip``.
     """
@@ -15,7 +15,7 @@ class Stick(Contact):
     api_version = 2
     citation = "Sulsky, Chen & Schreyer, Comput. Methods Appl. Mech. Eng. 118 (1994) 179-196"
 
-    releases: bool = Field(default=False, description="whether it lets go of material that is pulled away")
+    releases: bool = Field(default=False, description="whether it releases material that is pulled away")
 
     parity = "odd"
     memory = {"contact": StateVariable("1", "1 where the wall holds the material, 0 elsewhere")}

@@ -12,7 +12,7 @@ from mpmkit.contracts import Column, Diagnostic, Observed, Space, hookimpl, quan
 class LargestPressure(Diagnostic):
     """The largest pressure of the particles within half a cell of a wall, and their mean by volume.
 
-    The wall is one of ``walls``, or a face of the grid. ``nan`` if no particle is so near.
+    The wall is one of ``walls``, or a face of the grid. ``nan`` if no particle is that close.
     """
 
     name = "largest-pressure"

@@ -14,7 +14,7 @@ from .regularisation import yield_viscosity
 class Bingham(GeneralisedNewtonianLaw):
     """mu(γ̇) = tau0 (1 - exp(-m γ̇)) / γ̇ + mu_p.
 
-    In simple shear tau = tau0 (1 - exp(-m γ̇)) + mu_p γ̇: short of Bingham's by tau0 exp(-m γ̇).
+    In simple shear tau = tau0 (1 - exp(-m γ̇)) + mu_p γ̇, which is tau0 exp(-m γ̇) less than Bingham's law.
     """
 
     name = "bingham"

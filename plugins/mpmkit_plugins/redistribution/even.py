@@ -9,19 +9,19 @@ from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 DUE = 0.1
 """Shear ∫ γ̇ dt between two corrections."""
 FULL = 0.75
-"""Crowding from which a node is full; it is inside if all around it are full as well."""
+"""Least crowding of a full node; a full node whose neighbours are all full is inside."""
 CROWDED = 1.05
-"""Crowding that still counts as none where a node is not inside."""
+"""Crowding that is tolerated at nodes that are not inside."""
 MOST = 0.4
-"""Departure of ln κ that counts at most: what lies over each other is not thrown apart."""
+"""Limit of |ln κ| in corrections, so that particles on top of each other are not thrown apart."""
 RATE = 2.0
-"""Rate at which crowding is undone, over γ̇: by J, in cells, and by the shift, in squares of the spacing."""
+"""Rate of the corrections over γ̇: the factor 2 of d ln J/dt and of dx/dt below."""
 STEEP, LOOSE = 0.25, 0.8
-"""Change of the crowding over a cell above which, and crowding below which, a particle is at the surface."""
+"""At the surface, the crowding changes by more than ``STEEP`` over a cell, or is below ``LOOSE``."""
 LONGEST = 0.2
 """Longest shift, over the spacing of the particles."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
-"""Filling below which a cell is at the surface; bounds of the filling that is divided by, and of weights."""
+"""A cell with a filling below ``EMPTY`` is at the surface; the others bound divisors and weights."""
 PASSES = 3
 """Passes of the weights; more amplify noise where nearly every box lies across a face between cells."""
 
@@ -34,7 +34,7 @@ class Even(Redistribution):
     particles' spacing h:
 
         d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
-        dx/dt = -2 γ̇ h² ∇κ_f, what is missing counting inside only, with no part out of the surface,
+        dx/dt = -2 γ̇ h² ∇κ_f, with κ_f < 1 only inside, and without a component out of the surface,
         V of the internal force ← w V, with weights w that fill each full cell, Σ_p w_p V_p part_pc = V_c.
     """
 

@@ -5,14 +5,14 @@ import math
 from mpmkit.contracts import GeneralisedNewtonianLaw, Redistribution, hookimpl
 
 LONG = 40.0
-"""Times √(h/g) after which flows that do not come to rest were seen to go wrong: films from 65 on (4.7 s),
-water that swings from 45 on."""
+"""Time, in units of √(h/g), after which flows that do not come to rest may be wrong. In measurements, films
+were wrong from 65 on (4.7 s), and oscillating water from 45 on."""
 RESTS_YIELD, RESTS_VISCOSITY = 10.0, 100.0
-"""Yield stress, Pa, and viscosity, Pa s, from which on what is let go comes to rest sooner than that."""
+"""Yield stress, Pa, and viscosity, Pa s; material with a larger one comes to rest before that time."""
 
 
 class NoRedistribution(Redistribution):
-    """The scheme as published, and solids, whose particles keep their neighbours."""
+    """Particles move only with the grid: the scheme as published, and right for solids."""
 
     name = "none"
     api_version = 2
@@ -44,7 +44,7 @@ def _is_driven(case) -> bool:
 
 
 def _is_thin(law) -> bool:
-    """Whether neither yield stress nor viscosity are known to bring it to rest."""
+    """Whether neither a yield stress nor a viscosity is large enough to bring the fluid to rest."""
     if getattr(law, "yield_stress", 0.0) >= RESTS_YIELD:
         return False
     viscous = isinstance(law, GeneralisedNewtonianLaw)

@@ -1,28 +1,28 @@
-"""Particles that are drawn out are split, as long as there is need of them."""
+"""Splitting of particles with long boxes, as long as more particles are needed."""
 
 import numpy as np
 
 from mpmkit.contracts import Refinement, Refining, hookimpl
 
 LONG = 1 + 1e-9
-"""Side of a box, in cells, from which it is split: one that is longer leaves cells without a particle."""
+"""Side of a box, in cells, above which it is split: a longer one leaves cells without a particle."""
 SOON = 0.8
-"""Side from which a box is split as well where another one is too long: arrays then grow rarely."""
+"""Side, in cells, above which a box is also split if another one is too long, so that arrays grow rarely."""
 MIXED = 2.0
-"""Side from which one that finds no room is cut: its halves would lie in other cells, which are full."""
+"""Side, in cells, above which a box is cut if it cannot be split because the cells of its halves are full."""
 SMALLEST = 1 / 8
-"""Portion of a particle of the start that a half has at least where its cell has enough particles."""
+"""Least portion (share of an initial particle) of a half in a cell with enough particles."""
 
 
 class Split(Refinement):
     """A box that is longer than a cell along an axis is halved, unless there are enough small particles.
 
-    The portions of all particles add up to their number n at the start: there are never more than 8 n of an
-    eighth or more. Smaller halves only come into cells with fewer particles than a full one has at the
-    start, and in all there are at most two full cells of them for each cell with material; a thread that is
-    drawn out and out needs them. Elsewhere the box of a particle that is too small to be
-    split is cut to a cell when it is two cells long: what drew it out so often has mixed it with others,
-    which fill the room.
+    The portions of all particles add up to their number n at the start, so there are never more than 8 n
+    particles with a portion of an eighth or more. Smaller halves are made only in cells with fewer particles
+    than a full cell has at the start. A thread that is stretched very far needs them. Their number is limited
+    to that of two full cells for each cell with material. Elsewhere, a particle too small to be split gets
+    its box cut to a cell when it is two cells long: so much strain has mixed it with other particles, which
+    fill the space.
     """
 
     name = "split"
@@ -40,7 +40,7 @@ class Split(Refinement):
 
 
 def _affordable(ops: Refining, needed: np.ndarray) -> np.ndarray:
-    """What is needed; nothing if there were then more small ones than two full cells for each cell."""
+    """The needed splits; none if there were then more small particles than two full cells for each cell."""
     small = np.count_nonzero(ops.portion() < SMALLEST) + 2 * np.count_nonzero(needed)
     return needed & (small <= 2 * (ops.full() / ops.count()).sum())
 

@@ -1,21 +1,20 @@
-"""Particles that are drawn out are split, and pieces that come together are merged."""
+"""Splitting of particles with long boxes, and merging of small particles in crowded cells."""
 
 from mpmkit.contracts import Refining, hookimpl
 
 from .split import Split
 
 WHOLE = 1.0
-"""Portion of a particle of the start that a merged one has at most."""
+"""Largest portion (share of an initial particle) of a merged particle."""
 
 
 class SplitAndMerge(Split):
-    """As ``split``; and where a cell has more particles than a full one at the start, pieces are merged.
+    """As ``split``; in cells with more particles than a full cell at the start, pieces are also merged.
 
-    Pairs of pieces that are together no more than one particle of the start, nearest first, until there are
-    none or the cell has no more than a full one. What is then left in a cell that has more are pieces of
-    which no two fit into one: k of them are more than (k - 1)/2 particles of the start. The portions of all
-    add up to the number n at the start, so that there are at most 2 n particles and one full cell for each
-    cell that the material is in.
+    Pairs of pieces with a sum of portions of at most 1 are merged, nearest pairs first, until there are none,
+    or the cell has no more particles than a full cell. If such a cell still has k pieces, no two of them fit
+    together, so the sum of their portions is above (k - 1)/2. The portions of all particles add up to the
+    number n at the start. So there are at most 2 n particles and one full cell for each cell with material.
     """
 
     name = "split-and-merge"

@@ -23,7 +23,7 @@ class BodySurface(RigidSurface):
     api_version = 2
     citation = "Osher & Fedkiw, Level Set Methods and Dynamic Implicit Surfaces (2003), chapter 2"
 
-    shape: AnyShape = Field(description="shape, as a body of material may have it")
+    shape: AnyShape = Field(description="a shape, with the same keys as that of a body")
     side: Literal["inside", "outside"] = Field(
         description="where the material is: inside of the shape, or outside of it"
     )
@@ -81,7 +81,7 @@ class BodySurface(RigidSurface):
         return [
             f"walls.{name} is {what}, and contact '{wall.contact.name}' lets material slide in its inner "
             "edges: a node knows only one of the faces there, so that material may sink into the edge; "
-            "a wall of its own for each face holds it"
+            "a separate wall for each face holds it"
             for name, wall in case.walls.items()
             if wall.surface == self and wall.contact.parity == "mirror"
         ]

@@ -34,7 +34,7 @@ class Plane(RigidSurface):
             )
         if isinstance(self.motion, Rotation):
             return (
-                "the motion's kind is 'rotation', but a plane has no end, and its speed would have none; "
+                "the motion's kind is 'rotation', but a plane is infinite, and so would be its speed; "
                 "use a body, such as a box"
             )
         return super().problem(space)

@@ -1,4 +1,4 @@
-"""What the built-in surfaces share: a motion, and the time in which they are there."""
+"""Base class of the built-in surfaces: their motion, and the time in which they are present."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mpmkit.contracts import Space, Surface, quantity
 from mpmkit.geometry import AnyMotion, MovingSolid, Solid
 
 LARGEST = 1e9
-"""Size of a number of a surface, in SI units: its square must be a number, and differ from that of a cell."""
+"""Largest number of a surface, in SI units; far larger ones lose the size of a cell to rounding."""
 
 
 class RigidSurface(Surface):

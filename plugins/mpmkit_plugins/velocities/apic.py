@@ -26,7 +26,7 @@ class APIC(VelocityUpdate):
 
     rate: float | None = quantity(
         "1/s",
-        "decay of the part of the velocity that an affine field on the grid does not see; default: a "
+        "decay of the part of the velocity that is not affine on the grid; default: a "
         "20th of the cells that the fastest wave crosses in a second",
         ge=0,
         default=None,

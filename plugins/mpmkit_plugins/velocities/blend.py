@@ -17,7 +17,7 @@ class Blend(VelocityUpdate):
     citation = "Stomakhin et al., ACM Trans. Graph. 32 (2013) 102, with a rate instead of a fraction a step"
 
     rate: float = quantity(
-        "1/s", "decay of the part of the velocity that the grid does not see", ge=0, default=10.0
+        "1/s", "decay of the part of the velocity that the grid cannot represent", ge=0, default=10.0
     )
 
     def map_to_particles(self, ops: Operations, dt: float) -> None:
