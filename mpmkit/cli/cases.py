@@ -74,5 +74,8 @@ def _first_sentence(text: str) -> str:
 
 
 def _beside(before: str, text: str, wide: int) -> str:
-    """A text to the right of ``before``, in as many lines of ``wide`` characters as it needs."""
-    return textwrap.fill(text, wide, initial_indent=before, subsequent_indent=" " * len(before))
+    """A text to the right of ``before``, in as many lines of ``wide`` characters as it needs. Names such as
+    EN 12350-12 are not broken at their hyphens."""
+    return textwrap.fill(
+        text, wide, initial_indent=before, subsequent_indent=" " * len(before), break_on_hyphens=False
+    )

@@ -83,6 +83,15 @@ def _ratio(p: Given, stretching: float) -> float:
     return end / back
 
 
+def _ratio_behind_bars(p: Given) -> float:
+    step = bar_step(p["bar_diameter"], p["box_width"] / p["bars"], sink(p))
+    area = p["column_width"] * p["column_height"]
+    back, end = box_depths(
+        area, p["channel_length"], sink(p), stretching=PLANE, step=step, bars=p["bar_place"]
+    )
+    return end / back
+
+
 def _ring(p: Given) -> tuple[float, Callable[[float], float]]:
     interval = 2 * math.pi * p["ring_radius"] / (4 * p["bars_in_quarter"])
     step = bar_step(p["bar_diameter"], interval, sink(p))
@@ -216,6 +225,10 @@ FORMULAS: dict[str, list[Formula]] = {
         Formula("relative_slump", "slices, Pashias et al. 1996: 1 - 2τ' (1 - ln 2τ')", _cylinder_slump, 0.05)
     ],
     "l_box": _layer("passing_ratio", _ratio, PLANE, 0.1),
+    "l_box_bars": [
+        Formula("passing_ratio", f"{STRETCHED}, with a step at the bars", _ratio_behind_bars, 0.1),
+        Formula("passing_ratio", "the same without bars", lambda p: _ratio(p, PLANE), None),
+    ],
     "j_ring": [
         Formula("j_ring_flow", f"{STRETCHED}, with a step at the bars", lambda p: _ring(p)[0], 0.08),
         Formula("blocking_step", "the same: the middle above the outside", _ring_step, None),
