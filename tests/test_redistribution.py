@@ -169,6 +169,41 @@ def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
     assert p.mass.sum() == mass
 
 
+@pytest.mark.parametrize("space", ["plane-strain", "3d"])
+def test_particles_in_lines_are_brought_apart(space):
+    """A floor on which material is stretched turns a lattice into columns.
+
+    On the line of a column the gradient of the crowding is zero: a shift along the gradient alone leaves the
+    columns as they are.
+    """
+    simulation = filled(space, SEAMED)
+    p, operations = simulation.particles, simulation.operations
+    up, side = p.dim - 1, CELLS * DX
+    p.position[:, 0] = (np.floor(p.position[:, 0] / (1.5 * DX)) + 0.5) * 1.5 * DX
+    for column in np.unique(p.position[:, :up].round(9), axis=0):
+        (those,) = np.nonzero(np.isclose(p.position[:, :up], column).all(axis=1))
+        p.position[those, up] = (np.arange(len(those)) + 0.5) / len(those) * side
+    p.velocity_gradient[:, 0, 0], p.velocity_gradient[:, up, up] = 1.0, -1.0  # γ̇ = 2 /s
+    stage, acting = operations.stage, operations.stage.redistribution
+
+    def unevenness():
+        found = []
+        redistribute(simulation, lambda ops: found.append(ops.cells().at_particles(ops.cells().filling())))
+        stage.redistribution = acting
+        return np.abs(found[0] - 1).mean()
+
+    before = None
+    for step in range(40):
+        operations.sorting.sorts = 0
+        operations.begin()
+        before = unevenness() if before is None else before
+        stage.shear, stage.elapsed = 0.1, 0.05
+        simulation.particles.time = 0.05 * step
+        stage.redistribute_if_due(operations.window, operations.sorting)
+    assert before > 0.1
+    assert unevenness() < 0.25 * before
+
+
 @spaces
 def test_the_weighted_volumes_fill_every_full_cell(space):
     """Σ_p V_p w_p is the volume of the cells, however the particles lie in them."""

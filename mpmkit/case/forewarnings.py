@@ -57,8 +57,8 @@ def _few_particles(case: Case) -> Iterator[str]:
             yield (
                 f"{where.removesuffix('.material')} has {count} particles per cell: in three dimensions a "
                 "fluid that is sheared far flows too easily with fewer than "
-                f"{ENOUGH_IN_3D} (a slump at 10 mm spread 3 % too far "
-                "with 8, 0.6 % with 27); see particles_per_cell"
+                f"{ENOUGH_IN_3D} (a slump at 10 mm spread 1.6 % too far "
+                "with 8, 0.2 % with 27); see particles_per_cell"
             )
 
 

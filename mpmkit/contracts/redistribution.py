@@ -76,6 +76,13 @@ class Redistributing(Protocol):
         redistribution: if a flow starts suddenly, the present rate is not the rate of that whole time.
         """
 
+    def random(self) -> np.ndarray:
+        """Random numbers from -1 to 1, ``(n, dim)``, the same at every call in a step.
+
+        They depend only on the number of the particle, the axis and the time. So a run gives the same result
+        with any number of threads, and when it is resumed.
+        """
+
     def scale_volume_ratio(self, factor: np.ndarray) -> None:
         """J ← factor J, for fluids only, at once: the pressure jumps by ρ c² (1 - factor)."""
 

@@ -10,6 +10,7 @@ from ...errors import PluginFault
 from ...kernels import domains, shifts, sums, volumes
 from ...kernels.compile import chunk_count
 from ...kernels.nodes import OPEN, PERIODIC
+from ...kernels.randoms import uniform
 from ...kernels.splines import SUPPORT
 from ...kernels.tensors import shear_rate
 from ...registry import audit
@@ -210,6 +211,10 @@ class Stage:
     def shear_rate(self) -> np.ndarray:
         rate = shear_rate(self._particles.velocity_gradient)
         return np.minimum(rate, OVER_MEAN * self.shear / self.elapsed) if self.elapsed > 0 else rate
+
+    def random(self) -> np.ndarray:
+        p = self._particles
+        return uniform(p.number, p.time, p.dim)
 
     def cells(self) -> contract.Cells:
         p = self._particles

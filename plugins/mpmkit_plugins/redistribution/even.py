@@ -1,5 +1,7 @@
 """Keeps volume, box and position of sheared particles consistent."""
 
+import math
+
 import numpy as np
 from numba import prange
 
@@ -18,6 +20,8 @@ RATE = 2.0
 """Rate of the corrections over γ̇: the factor 2 of d ln J/dt and of dx/dt below."""
 STEEP, LOOSE = 0.25, 0.8
 """At the surface, the crowding changes by more than ``STEEP`` over a cell, or is below ``LOOSE``."""
+UNEVEN, DIFFUSION = 0.4, 0.5
+"""Least |κ_f - 1| at which particles walk at random; diffusivity, over γ̇ h² and the part above ``UNEVEN``."""
 LONGEST = 0.2
 """Longest shift, over the spacing of the particles."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
@@ -69,42 +73,49 @@ def _excess(crowding: np.ndarray, inside: np.ndarray) -> np.ndarray:
 def _shift(
     ops: Redistributing, crowding: np.ndarray, inside: np.ndarray, rate: np.ndarray, time: float
 ) -> np.ndarray:
-    """-2 γ̇ dt h² ∇(κ_f - 1), ``(n, dim)``, m."""
+    """-2 γ̇ dt h² ∇(κ_f - 1) and the random walk, ``(n, dim)``, m."""
     fine, h = ops.places, ops.places.spacing
     departure = np.clip(fine.crowding() - 1, -1.0, 1.0)
+    excess = np.maximum(fine.at_particles(np.abs(departure)) - UNEVEN, 0.0)
     departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
     shift = fine.slope_at_particles(departure)
-    factor = -RATE * time * h * h * ops.nodes.at_particles(rate)
+    sheared = time * ops.nodes.at_particles(rate)
     slope, there = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding)
-    _limit(factor, slope, there, ops.nodes.spacing, LONGEST * h, shift)
+    _displace(sheared, excess, h, slope, there, ops.nodes.spacing, ops.random(), shift)
     return shift
 
 
 @kernel()
-def _limit(factor, slope, crowding, spacing, longest, shift):
-    """shift ← factor shift, near the surface without its part down the crowding, and not too long.
+def _displace(sheared, excess, h, slope, crowding, spacing, random, shift):
+    """Turn ∇κ_f into the shift: scale it, add the random walk, and leave out parts near the surface.
+
+    Near the surface, the shift has no part down the crowding, and the walk has no part across the surface in
+    either direction: a walk that goes only inwards would move the surface.
 
     Args:
-        factor, crowding: ``(n,)``.
-        slope: ``(n, dim)``, 1/m, of the crowding.
-        spacing, longest: m.
-        shift: ``(n, dim)``, m; its largest component is no more than ``longest`` afterwards.
+        sheared, excess: ``(n,)``, γ̇ dt, and the part of |κ_f - 1| above ``UNEVEN``.
+        h, spacing: m, of the particles and of the nodes.
+        slope, crowding: ``(n, dim)``, 1/m, and ``(n,)``: ∇κ and κ of the nodes.
+        random: ``(n, dim)``, from -1 to 1.
+        shift: ``(n, dim)``, ∇κ_f, 1/m, becomes the shift, m; its largest component is at most ``LONGEST`` h.
     """
     n, dim = shift.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            steepness = outwards = 0.0
+            drawn, walk = -RATE * sheared[p] * h * h, math.sqrt(6 * DIFFUSION * excess[p] * sheared[p]) * h
+            steepness = outwards = along = 0.0
             for d in range(dim):
-                shift[p, d] *= factor[p]
-                steepness += (spacing * slope[p, d]) ** 2
-                outwards += shift[p, d] * spacing * slope[p, d]
+                steep = spacing * slope[p, d]
+                steepness += steep * steep
+                outwards += drawn * shift[p, d] * steep
+                along += walk * random[p, d] * steep
             near = steepness > STEEP**2 or crowding[p] < LOOSE
-            taken = outwards / max(steepness, 1e-300) if near and outwards < 0.0 else 0.0
+            taken = (min(outwards, 0.0) + along) / max(steepness, 1e-300) if near else 0.0
             most = 0.0
             for d in range(dim):
-                shift[p, d] -= taken * spacing * slope[p, d]
+                shift[p, d] = drawn * shift[p, d] + walk * random[p, d] - taken * spacing * slope[p, d]
                 most = max(most, abs(shift[p, d]))
-            part = min(1.0, longest / max(most, 1e-300))
+            part = min(1.0, LONGEST * h / max(most, 1e-300))
             for d in range(dim):
                 shift[p, d] *= part
 
