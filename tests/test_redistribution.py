@@ -287,6 +287,22 @@ def test_only_the_flow_carries_material_out_of_an_open_face():
     assert (simulation.particles.position.max(axis=0) == top).all()
 
 
+def test_no_box_is_shifted_across_the_axis():
+    """The area V/(2 π r) of a particle on the axis is infinite, and the crowding would be as well."""
+    simulation = filled("axisymmetric")
+    simulation.operations.begin()
+    p = simulation.particles
+    before, box = p.position.copy(), p.box.copy()
+    p.position[:7, 0] = 0.5 * box[:7, 0]  # already across: these stay
+    inwards = np.zeros_like(p.position)
+    inwards[:, 0] = -0.3 * DX
+    redistribute(simulation, lambda ops: ops.shift(inwards))
+    np.testing.assert_array_equal(p.position[:7, 0], 0.5 * box[:7, 0])
+    expected = np.maximum(before[7:, 0] - 0.3 * DX, np.minimum(before[7:, 0], box[7:, 0]))
+    np.testing.assert_allclose(p.position[7:, 0], expected, rtol=1e-12)
+    np.testing.assert_array_equal(inwards[:, 0], -0.3 * DX)
+
+
 def test_a_solid_keeps_its_places_and_boxes():
     simulation = filled("plane-strain", SEAMED, materials=(FLUID, RUBBER))
     p = disorder(simulation)

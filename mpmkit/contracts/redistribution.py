@@ -94,7 +94,10 @@ class Redistributing(Protocol):
         """
 
     def shift(self, displacement: np.ndarray) -> None:
-        """x ← x + δx, for fluids only, not beyond walls; v changes by its affine part; Σ m v is kept."""
+        """x ← x + δx, for fluids only, not beyond walls, and no box across the axis of an axisymmetric scene.
+
+        v changes by its affine part; Σ m v is kept.
+        """
 
     def weigh(self, factor: np.ndarray) -> None:
         """Factors of the volumes of the particles in the internal force from now on."""

@@ -243,7 +243,10 @@ class Stage:
     def shift(self, displacement: np.ndarray) -> None:
         p = self._particles
         self._require(displacement, "a displacement", p.position.shape)
-        displacement = np.ascontiguousarray(displacement, dtype=np.float64)
+        displacement = np.array(displacement, dtype=np.float64)
+        if self._radial:  # the area V/(2 π r) has no limit at the axis: no box is shifted across it
+            radius = p.position[:, 0]
+            np.maximum(displacement[:, 0], np.minimum(p.box[:, 0] - radius, 0.0), out=displacement[:, 0])
         low, high = self._kept_inside()
         change = np.zeros((len(p), p.affine.shape[1]))
         for part in self._fluids():
