@@ -151,12 +151,20 @@ def test_a_case_with_a_redistribution_is_planned():
     assert found["memory_bytes"] > plain["memory_bytes"]
 
 
-@pytest.mark.parametrize("file", ["slump_ferreira.json", "slump_quarter_fine.json"])
-def test_a_particle_in_three_dimensions_takes_no_more_than_700_bytes(file):
-    """Nodes included; that ``plan`` says what the arrays take is asserted above."""
-    case = load_case(CASES / file)
+@pytest.mark.parametrize(
+    ("file", "changes", "most"),
+    [
+        ("slump_ferreira.json", [], 700),
+        ("slump_quarter_fine.json", ["scheme.redistribution=none"], 700),
+        ("slump_quarter_fine.json", [], 950),
+    ],
+)
+def test_a_particle_in_three_dimensions_takes_few_bytes(file, changes, most):
+    """Nodes included; that ``plan`` says what the arrays take is asserted above. A redistribution needs splines of
+    its own, on two lattices."""
+    case = load_case(CASES / file, changes)
     particles = expected_particles(case)
-    assert expected_bytes(case, particles) / particles < 700
+    assert expected_bytes(case, particles) / particles < most
 
 
 def test_a_wider_domain_takes_no_more_nodes():

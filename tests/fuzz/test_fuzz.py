@@ -24,6 +24,7 @@ from hypothesis import strategies as st
 from mpmkit.case import load_case, parse_case
 from mpmkit.cli import main
 from mpmkit.errors import CaseError, GuardStop, MpmkitError
+from mpmkit.kernels.code_folders import cache_root
 from mpmkit.solver.memory import expected_particles, require_memory
 from mpmkit.solver.simulation import Simulation
 
@@ -33,6 +34,8 @@ SECONDS = 20.0
 """No bad case may take longer to be refused: the first one compiles nothing, but may wait for its core."""
 MOST = 3000
 """Particles of a mutant that is run, should it be valid."""
+CODE = os.path.realpath(cache_root() or tempfile.gettempdir())
+"""Folder of compiled kernels, which a run may write."""
 FORBIDDEN = ("os.system", "os.exec", "os.posix_spawn", "os.fork", "subprocess.Popen", "pickle.find_class",
              "socket.connect")  # fmt: skip
 
@@ -56,7 +59,7 @@ def _watch(event: str, arguments: tuple) -> None:
         writes = flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT) if isinstance(flags, int) else "r" not in mode
         if writes and isinstance(path, str | bytes | os.PathLike):
             where = os.path.realpath(os.fsdecode(path))
-            caches = (os.path.realpath(os.environ.get("NUMBA_CACHE_DIR", "~")), str(Path.home() / ".cache"))
+            caches = (str(Path.home() / ".cache"), CODE)
             if not where.startswith((watched["inside"], *caches, "/dev/null", sys.prefix)):
                 watched["done"].append((event, where, mode))
 

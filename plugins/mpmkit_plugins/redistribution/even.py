@@ -21,7 +21,7 @@ RATE = 2.0
 STEEP, LOOSE = 0.25, 0.8
 """At the surface, the crowding changes by more than ``STEEP`` over a cell, or is below ``LOOSE``."""
 UNEVEN, DIFFUSION = 0.4, 0.5
-"""Least |κ_f - 1| at which particles walk at random; diffusivity, over γ̇ h² and the part above ``UNEVEN``."""
+"""In 3-D: |κ_f - 1| above which particles walk at random; diffusivity, over γ̇ h² and the part above."""
 LONGEST = 0.2
 """Longest shift, over the spacing of the particles."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
@@ -79,6 +79,8 @@ def _shift(
     excess = np.maximum(fine.at_particles(np.abs(departure)) - UNEVEN, 0.0)
     departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
     shift = fine.slope_at_particles(departure)
+    if shift.shape[1] < 3:
+        excess[:] = 0.0
     sheared = time * ops.nodes.at_particles(rate)
     slope, there = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding)
     _displace(sheared, excess, h, slope, there, ops.nodes.spacing, ops.random(), shift)
