@@ -248,7 +248,7 @@ def test_of_very_many_bodies_a_few_are_named_quickly():
 
 
 WARNED = {"two_discs": CONTACT, "slump_quarter_fine": "has 8 particles per cell"}
-"""What the only warning of a shipped case says; with 27 particles per cell the fine quarter takes too long."""
+"""What the only warning of a shipped case says. With 27 particles per cell the fine quarter takes long."""
 
 
 def test_few_of_the_shipped_cases_are_warned_of_and_each_of_one_thing():

@@ -160,8 +160,10 @@ def test_a_case_with_a_redistribution_is_planned():
     ],
 )
 def test_a_particle_in_three_dimensions_takes_few_bytes(file, changes, most):
-    """Nodes included; that ``plan`` says what the arrays take is asserted above. A redistribution needs splines of
-    its own, on two lattices."""
+    """Nodes included; that ``plan`` says what the arrays take is asserted above.
+
+    A redistribution needs splines of its own, on two lattices.
+    """
     case = load_case(CASES / file, changes)
     particles = expected_particles(case)
     assert expected_bytes(case, particles) / particles < most

@@ -39,6 +39,7 @@ class Even(Redistribution):
 
         d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
         dx/dt = -2 γ̇ h² ∇κ_f, with κ_f < 1 only inside, and without a component out of the surface,
+        in 3-D a random walk of diffusivity 0.5 γ̇ h² (|κ_f - 1| - 0.4) where |κ_f - 1| > 0.4,
         V of the internal force ← w V, with weights w that fill each full cell, Σ_p w_p V_p part_pc = V_c.
     """
 
