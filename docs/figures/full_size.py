@@ -2,7 +2,8 @@
 
     mpmkit run cases/slump.json
     mpmkit run docs/figures/slump_full.json --threads 2
-    mpmkit run cases/slump_quarter_fine.json --set scheme.splitting=true --until 4 --out runs/quarter
+    mpmkit run cases/slump_quarter_fine.json --set scheme.redistribution=none --set scheme.splitting=true \\
+        --until 4 --out runs/quarter
     mpmkit run cases/slump_ferreira.json --threads 1            # ended after an hour, with Ctrl-C
     python docs/figures/full_size.py
 
