@@ -49,5 +49,6 @@ def fill_uniform(number, time, out):
 def uniform(number: np.ndarray, time: float, dim: int) -> np.ndarray:
     """Numbers from -1 to 1, ``(n, dim)``, that depend on a particle's number, on the time and on the axis."""
     out = np.empty((len(number), dim))
-    fill_uniform(number.astype(np.uint64), np.float64(time).view(np.uint64), out)
+    with np.errstate(over="ignore"):  # products are meant modulo 2⁶⁴; uncompiled, numpy would warn
+        fill_uniform(number.astype(np.uint64), np.float64(time).view(np.uint64), out)
     return out
