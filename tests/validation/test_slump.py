@@ -7,6 +7,7 @@ fitted to it.
 from __future__ import annotations
 
 import csv
+import math
 from functools import cache
 from pathlib import Path
 
@@ -14,9 +15,10 @@ import numba
 import numpy as np
 import pytest
 from bands import below, close_to
-from clock import at
+from clock import advance_to, at
 
 import mpmkit
+from mpmkit.solver.crowding import crowding
 
 pytestmark = pytest.mark.section(3)
 ROOT = Path(__file__).parents[2]
@@ -162,6 +164,53 @@ def test_quarter_model_agrees_with_axisymmetric_to_its_rest(validate):
     off = np.abs(quarter.spread / np.interp(quarter.time, time, spread) - 1).max()
     validate("Quarter model, 10 mm: D(t), largest departure from the reference", off, below(0.04, "0"))
     validate("Quarter model, 10 mm: T500", quarter.t500, close_to(0.607, rel=0.1), unit="s")
+
+
+def test_front_on_a_stick_floor_is_round(validate):
+    """Slump flow, quarter model, 15 mm, 8 particles per cell: the front is as far on an axis as between them.
+
+    On the axes the rows of the lattice lie along the flow. Particles that stay in rows are pushed along
+    them, and the front has a tip there. Position of the front: where the crowding of the nodes is 1/2.
+    """
+    flowing = (
+        'bodies.0.material={"law": "bingham-evp", "density": 2300, "yield_stress": 50, '
+        '"plastic_viscosity": 30, "sound_speed": {"mach": 0.1}}'
+    )
+    domain = 'grid.domain={"x": [0, 0.36], "y": [0, 0.36], "z": [0, 0.315]}'
+    changes = [
+        flowing,
+        "grid.cell_size=0.015",
+        domain,
+        "grid.faces.z_min=stick",
+        "bodies.0.particles_per_cell=8",
+    ]
+    simulation = mpmkit.Simulation(mpmkit.load_case(ROOT / "cases/slump_quarter.json", changes))
+    advance_to(simulation, 0.5)
+    found = crowding(simulation.particles, simulation.grid, radial=False)
+    first = -found.block.lower
+    values = found.values.reshape(found.block.shape)[first[0] :, first[1] :]
+    count = np.arange(min(values.shape[:2]))
+    fronts = [
+        spacing * max(map(edge, rows.T))
+        for rows, spacing in (
+            (values[:, 0], 0.015),
+            (values[0], 0.015),
+            (values[count, count], 0.015 * math.sqrt(2)),
+        )
+    ]
+    on_axes, between_them = np.mean(fronts[:2]), fronts[2]
+    row = "Slump flow, stick floor, quarter model: front on the axes over front between them"
+    validate(row, on_axes / between_them, close_to(1.0, abs=0.025))
+
+
+def edge(crowding_along: np.ndarray) -> float:
+    """Where the crowding of a row of nodes falls below 1/2 for the last time, in nodes; else 0."""
+    (above,) = np.nonzero(crowding_along[:-1] >= 0.5)
+    if not len(above):
+        return 0.0
+    last = above[-1]
+    inner, outer = crowding_along[last], crowding_along[last + 1]
+    return float(last + (inner - 0.5) / (inner - outer))
 
 
 @cache

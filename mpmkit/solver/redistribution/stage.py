@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ...case.scheme import Scheme
@@ -166,6 +168,7 @@ class Stage:
         author.redistribute(self, self.elapsed)
         self.energy += self._energy_of_particles() - before
         self.momentum += self._momentum_of_particles() - momentum
+        self._particles.shear += self.elapsed * self.shear_rate()
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.elapsed = 0.0
         return True
@@ -205,8 +208,15 @@ class Stage:
     # --- For the redistribution
 
     @property
+    def dim(self) -> int:
+        return self._grid.dim
+
+    @property
     def time(self) -> float:
         return self._particles.time
+
+    def past_shear(self) -> np.ndarray:
+        return self._particles.shear
 
     def shear_rate(self) -> np.ndarray:
         rate = shear_rate(self._particles.velocity_gradient)
@@ -281,7 +291,13 @@ class Stage:
             raise PluginFault(
                 author, f"gave {found} as {what}; it must be an array of shape {shape} of float64"
             )
-        audit.require_finite(author, what, given, p.number, [p.position, p.volume, p.velocity_gradient])
+        audit.require_finite(author, what, given, p.number, self._arguments())
+
+    def _arguments(self) -> Iterator[np.ndarray]:
+        """What a redistribution is given; not finite where the run has diverged and J is not positive."""
+        p = self._particles
+        yield from (p.position, p.volume, p.velocity_gradient)
+        yield np.where(p.volume_ratio > 0, 0.0, np.nan)
 
     def _fluids(self) -> list[slice]:
         return [group.part for group in self._particles.present_groups if group.law.uses_equation_of_state]
