@@ -114,6 +114,6 @@ def test_interrupted_test_says_so(report_package):
     _, _, tables = report_package
     sheet = {
         "test": "test_x.py::test_y", "section": 4, "status": "running", "message": "", "seconds": 0.0,
-        "slow": False, "rows": [], "curves": [],
+        "slow": False, "version": "1.2.3", "rows": [], "curves": [],
     }  # fmt: skip
     assert "| `test_y` |  | interrupted |  | **did not finish** |" in tables.report([sheet], [])

@@ -148,13 +148,13 @@ def tally(sheets: list[Sheet]) -> str:
 
 def machine(sheets: list[Sheet]) -> str:
     """What it ran with and on."""
-    names = ("mpmkit", "numpy", "numba", "matplotlib")
-    versions = ", ".join(f"{name} {version(name)}" for name in names)
+    measured_with = " and ".join(sorted({sheet["version"] for sheet in sheets}))
+    versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "numba", "matplotlib"))
     minutes = sum(sheet["seconds"] for sheet in sheets) / 60
     slow = sum(sheet["slow"] for sheet in sheets)
     return (
-        f"{versions}, Python {platform.python_version()}; {platform.system()} on {_processor()}, "
-        f"{os.cpu_count()} cores, one thread. {len(sheets)} tests, {slow} of them slow, "
+        f"mpmkit {measured_with}, {versions}, Python {platform.python_version()}; {platform.system()} on "
+        f"{_processor()}, {os.cpu_count()} cores, one thread. {len(sheets)} tests, {slow} of them slow, "
         f"{minutes:.1f} minutes together.\n"
     )
 

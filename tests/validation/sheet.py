@@ -28,6 +28,8 @@ from typing import Any
 import numpy as np
 from bands import Band
 
+import mpmkit
+
 FOLDER, RESUME = "MPMKIT_VALIDATION_RECORDS", "MPMKIT_VALIDATION_RESUME"
 
 
@@ -105,6 +107,7 @@ class Sheet:
 
     def __init__(self, test: str, line: int, section: int, slow: bool) -> None:
         self.test, self.line, self.section, self.slow = test, line, section, slow
+        self.version = mpmkit.__version__
         self.began = time.time()
         self.rows: list[Row] = []
         self.curves: list[Curves] = []

@@ -20,8 +20,9 @@ RATE = 2.0
 """Rate of the corrections over γ̇: the factor 2 of d ln J/dt and of dx/dt below."""
 STEEP, LOOSE = 0.25, 0.8
 """At the surface, the crowding changes by more than ``STEEP`` over a cell, or is below ``LOOSE``."""
-DIFFUSION, ORDERED = 0.5, 3.0
-"""In 3-D: diffusivity of the random walk, over γ̇ h² (κ_f - 1)²; shear of a particle after which it ends."""
+UNEVEN, DIFFUSION, ORDERED = 0.05, 0.5, 3.0
+"""In 3-D: |κ_f - 1| from which particles walk at random (compression under gravity is less); diffusivity over
+γ̇ h² and the part above; shear of a particle after which the walk ends."""
 LONGEST = 0.2
 """Longest shift and longest step of the walk along an axis, over the spacing of the particles."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
@@ -39,7 +40,7 @@ class Even(Redistribution):
 
         d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
         dx/dt = -2 γ̇ h² ∇κ_f, with κ_f < 1 only inside, and without a component out of the surface,
-        in 3-D a random walk of diffusivity 0.5 γ̇ h² (κ_f - 1)² until a particle has sheared by 3,
+        in 3-D a random walk of diffusivity 0.5 γ̇ h² (|κ_f - 1| - 0.05), until a particle has sheared by 3,
         V of the internal force ← w V, with weights w that fill each full cell, Σ_p w_p V_p part_pc = V_c.
     """
 
@@ -77,14 +78,14 @@ def _shift(
     """-2 γ̇ dt h² ∇(κ_f - 1), and in 3-D the random walk, ``(n, dim)``, m."""
     fine, h = ops.places, ops.places.spacing
     departure = np.clip(fine.crowding() - 1, -1.0, 1.0)
-    uneven = fine.at_particles(np.abs(departure)) if ops.dim == 3 else None
     departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
+    uneven = fine.at_particles(np.abs(departure)) if ops.dim == 3 else None
     shift = fine.slope_at_particles(departure)
     sheared = time * ops.nodes.at_particles(rate)
     surface = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding), ops.nodes.spacing
     _scale(shift, sheared, h, *surface)
     if uneven is not None:
-        diffusivity = np.where(ops.past_shear() < ORDERED, DIFFUSION * uneven**2, 0.0)
+        diffusivity = np.where(ops.past_shear() < ORDERED, DIFFUSION * np.maximum(uneven - UNEVEN, 0.0), 0.0)
         _walk(shift, ops.random(), diffusivity * sheared, h, *surface)
     return shift
 
