@@ -152,7 +152,6 @@ def test_disorder_decays_and_momentum_and_mass_are_kept(space, faces):
     p.velocity[:] = np.random.default_rng(1).normal(size=p.velocity.shape)
     p.affine[:] = np.random.default_rng(2).normal(size=p.affine.shape)
     p.velocity_gradient[:, 0, 1] = 1.0
-    p.shear[:] = 10.0  # the random walk of 3-D has ended
     momentum, mass = p.mass @ p.velocity, p.mass.sum()
     stage, spread = simulation.operations.stage, []
     for _ in range(12):
@@ -203,43 +202,6 @@ def test_particles_in_lines_are_brought_apart():
         stage.redistribute_if_due(operations.window, operations.sorting)
     assert before > 0.1
     assert unevenness() < 0.25 * before
-
-
-@spaces
-def test_the_shear_of_every_particle_is_summed_up(space):
-    """∫ γ̇ dt of each particle, which stays with it when particles are sorted."""
-    simulation = filled(space)
-    p, operations = simulation.particles, simulation.operations
-    for _ in range(3):
-        operations.sorting.sorts = 0
-        operations.begin()
-        p.velocity_gradient[:, 0, 1] = np.where(p.number % 2, 1.0, 0.5)
-        operations.stage.shear = operations.stage.elapsed = 0.1
-        assert operations.stage.redistribute_if_due(operations.window, operations.sorting)
-    np.testing.assert_allclose(p.shear, np.where(p.number % 2, 0.3, 0.15))
-
-
-def test_the_random_walk_ends():
-    """Particles that have sheared enough lie in disorder, and more noise would only disturb them."""
-    simulation = filled("3d")
-    p = disorder(simulation)
-    p.velocity_gradient[:, 0, 1] = 1.0
-    drawn = []
-    for sheared in (0.0, 10.0):
-        p.shear[:] = sheared
-        ways = []
-        for time in (0.1, 0.2):  # other random numbers
-            p.time = time
-            stage = simulation.operations.stage
-            stage.shear = stage.elapsed = 0.1
-            before = p.position.copy()
-            stage.shift = lambda way, ways=ways: ways.append(way)
-            stage.redistribute_if_due(simulation.operations.window, simulation.operations.sorting)
-            del stage.shift
-            p.shear[:], p.position[:] = sheared, before
-        drawn.append(np.abs(ways[1] - ways[0]).max())
-    assert drawn[0] > 1e-3 * DX
-    assert drawn[1] == 0.0
 
 
 def test_a_scene_that_has_diverged_is_not_the_fault_of_the_redistribution():

@@ -65,10 +65,6 @@ class Redistributing(Protocol):
     """A lattice with the spacing of the particles."""
 
     @property
-    def dim(self) -> int:
-        """Number of the grid's axes."""
-
-    @property
     def time(self) -> float:
         """Time at the start of the step, s."""
 
@@ -79,9 +75,6 @@ class Redistributing(Protocol):
         """γ̇ = √(2 D':D') of each particle, 1/s, ``(n,)``, and at most twice the largest mean since the last
         redistribution: if a flow starts suddenly, the present rate is not the rate of that whole time.
         """
-
-    def past_shear(self) -> np.ndarray:
-        """∫ γ̇ dt of each particle up to the last redistribution, 1, ``(n,)``."""
 
     def random(self) -> np.ndarray:
         """Random numbers from -1 to 1, ``(n, dim)``, the same at every call in a step.

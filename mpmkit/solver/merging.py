@@ -58,7 +58,7 @@ def merge(p: Particles, pairs: np.ndarray, cell_size: float, radial: bool) -> No
     p.volume_ratio[one] = p.volume[one] / p.initial_volume[one]
     intensive = [
         p.velocity, p.velocity_gradient, p.stress, p.pressure, p.mapped_pressure, p.quadrature, p.expansion,
-        p.shear, p.least_half_size, p.deformation_gradient, p.age,
+        p.least_half_size, p.deformation_gradient, p.age,
     ]  # fmt: skip
     for array in intensive:
         if array is not None:

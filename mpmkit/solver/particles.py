@@ -111,8 +111,6 @@ class Particles:
     """(n,) part of the volume of a particle that enters the internal force"""
     expansion: np.ndarray
     """(n,) d ln J per unit of shear that a redistribution has asked for"""
-    shear: np.ndarray
-    """(n,) ∫ γ̇ dt since a particle came in, or since the start, up to the last redistribution"""
     deformation_gradient: np.ndarray | None
     """(n, 3, 3) F; None if nothing in the case needs it"""
     portion: np.ndarray

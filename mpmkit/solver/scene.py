@@ -113,7 +113,6 @@ def fresh_particles(
         mapped_pressure=np.zeros(n),
         quadrature=np.ones(n),
         expansion=np.zeros(n),
-        shear=np.zeros(n),
         deformation_gradient=np.tile(np.eye(3), (n, 1, 1)) if tracks_deformation(case) else None,
         portion=np.ones(n),
         age=np.zeros(n),

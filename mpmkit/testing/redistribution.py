@@ -12,7 +12,7 @@ from .scenes import AXES, DX, block, by_number, simulate
 from .violation import require, require_all, require_close, require_same
 from .volumetric import OIL
 
-MAY_CHANGE = ("position", "velocity", "volume_ratio", "volume", "quadrature", "expansion", "shear")
+MAY_CHANGE = ("position", "velocity", "volume_ratio", "volume", "quadrature", "expansion")
 """Particle fields that a redistribution changes, with its calls."""
 KEPT = ("number", "mass", "initial_volume", "affine", "velocity_gradient", "stress", "pressure")
 SHEAR_RATE, TIME = 1.0, 0.1

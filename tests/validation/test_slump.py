@@ -166,6 +166,7 @@ def test_quarter_model_agrees_with_axisymmetric_to_its_rest(validate):
     validate("Quarter model, 10 mm: T500", quarter.t500, close_to(0.607, rel=0.1), unit="s")
 
 
+@pytest.mark.xfail(strict=True, reason="rows of the lattice along the flow make tips: docs/findings.md")
 def test_front_on_a_stick_floor_is_round(validate):
     """Slump flow, quarter model, 15 mm, 8 particles per cell: the front is as far on an axis as between them.
 

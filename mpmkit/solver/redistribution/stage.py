@@ -168,7 +168,6 @@ class Stage:
         author.redistribute(self, self.elapsed)
         self.energy += self._energy_of_particles() - before
         self.momentum += self._momentum_of_particles() - momentum
-        self._particles.shear += self.elapsed * self.shear_rate()
         del self.nodes, self.places, self._splines, self._window, self._tasks
         self.shear = self.elapsed = 0.0
         return True
@@ -208,15 +207,8 @@ class Stage:
     # --- For the redistribution
 
     @property
-    def dim(self) -> int:
-        return self._grid.dim
-
-    @property
     def time(self) -> float:
         return self._particles.time
-
-    def past_shear(self) -> np.ndarray:
-        return self._particles.shear
 
     def shear_rate(self) -> np.ndarray:
         rate = shear_rate(self._particles.velocity_gradient)

@@ -6,7 +6,7 @@ import numpy as np
 from numba import prange
 
 from mpmkit.contracts import Cells, Redistributing, Redistribution, hookimpl
-from mpmkit.kernels.compile import CHUNK, chunk_count, inline, kernel
+from mpmkit.kernels.compile import CHUNK, chunk_count, kernel
 
 DUE = 0.1
 """Shear ∫ γ̇ dt between two corrections."""
@@ -20,11 +20,10 @@ RATE = 2.0
 """Rate of the corrections over γ̇: the factor 2 of d ln J/dt and of dx/dt below."""
 STEEP, LOOSE = 0.25, 0.8
 """At the surface, the crowding changes by more than ``STEEP`` over a cell, or is below ``LOOSE``."""
-UNEVEN, DIFFUSION, ORDERED = 0.05, 0.5, 3.0
-"""In 3-D: |κ_f - 1| from which particles walk at random (compression under gravity is less); diffusivity over
-γ̇ h² and the part above; shear of a particle after which the walk ends."""
+UNEVEN, DIFFUSION = 0.4, 0.5
+"""In 3-D: |κ_f - 1| above which particles walk at random; diffusivity, over γ̇ h² and the part above."""
 LONGEST = 0.2
-"""Longest shift and longest step of the walk along an axis, over the spacing of the particles."""
+"""Longest shift, over the spacing of the particles."""
 EMPTY, LEAST, LARGEST = 0.5, 0.5, 2.0
 """A cell with a filling below ``EMPTY`` is at the surface; the others bound divisors and weights."""
 PASSES = 3
@@ -40,7 +39,7 @@ class Even(Redistribution):
 
         d ln J/dt = -2 γ̇ ln κ inside, and -2 γ̇ ln(κ/1.05) elsewhere where κ > 1.05,
         dx/dt = -2 γ̇ h² ∇κ_f, with κ_f < 1 only inside, and without a component out of the surface,
-        in 3-D a random walk of diffusivity 0.5 γ̇ h² (|κ_f - 1| - 0.05), until a particle has sheared by 3,
+        in 3-D a random walk of diffusivity 0.5 γ̇ h² (|κ_f - 1| - 0.4) where |κ_f - 1| > 0.4,
         V of the internal force ← w V, with weights w that fill each full cell, Σ_p w_p V_p part_pc = V_c.
     """
 
@@ -75,80 +74,53 @@ def _excess(crowding: np.ndarray, inside: np.ndarray) -> np.ndarray:
 def _shift(
     ops: Redistributing, crowding: np.ndarray, inside: np.ndarray, rate: np.ndarray, time: float
 ) -> np.ndarray:
-    """-2 γ̇ dt h² ∇(κ_f - 1), and in 3-D the random walk, ``(n, dim)``, m."""
+    """-2 γ̇ dt h² ∇(κ_f - 1) and the random walk, ``(n, dim)``, m."""
     fine, h = ops.places, ops.places.spacing
     departure = np.clip(fine.crowding() - 1, -1.0, 1.0)
+    excess = np.maximum(fine.at_particles(np.abs(departure)) - UNEVEN, 0.0)
     departure[(departure < 0) & ~fine.nearest(ops.nodes, inside)] = 0.0
-    uneven = fine.at_particles(np.abs(departure)) if ops.dim == 3 else None
     shift = fine.slope_at_particles(departure)
+    if shift.shape[1] < 3:
+        excess[:] = 0.0
     sheared = time * ops.nodes.at_particles(rate)
-    surface = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding), ops.nodes.spacing
-    _scale(shift, sheared, h, *surface)
-    if uneven is not None:
-        diffusivity = np.where(ops.past_shear() < ORDERED, DIFFUSION * np.maximum(uneven - UNEVEN, 0.0), 0.0)
-        _walk(shift, ops.random(), diffusivity * sheared, h, *surface)
+    slope, there = ops.nodes.slope_at_particles(crowding), ops.nodes.at_particles(crowding)
+    _displace(sheared, excess, h, slope, there, ops.nodes.spacing, ops.random(), shift)
     return shift
 
 
-@inline()
-def _steepness(slope, spacing, crowding, p):
-    """|∇κ|² over a cell near the surface, elsewhere 0."""
-    steepness = 0.0
-    for d in range(slope.shape[1]):
-        steepness += (spacing * slope[p, d]) ** 2
-    return steepness if steepness > STEEP**2 or crowding[p] < LOOSE else 0.0
-
-
 @kernel()
-def _scale(shift, sheared, h, slope, crowding, spacing):
-    """Turn ∇κ_f into the shift; near the surface it has no part down the crowding.
+def _displace(sheared, excess, h, slope, crowding, spacing, random, shift):
+    """Turn ∇κ_f into the shift: scale it, add the random walk, and leave out parts near the surface.
+
+    Near the surface, the shift has no part down the crowding, and the walk has no part across the surface in
+    either direction: a walk that goes only inwards would move the surface.
 
     Args:
-        shift: ``(n, dim)``, ∇κ_f, 1/m, becomes the shift, m; its largest component is at most ``LONGEST`` h.
-        sheared: ``(n,)``, γ̇ dt.
+        sheared, excess: ``(n,)``, γ̇ dt, and the part of |κ_f - 1| above ``UNEVEN``.
         h, spacing: m, of the particles and of the nodes.
         slope, crowding: ``(n, dim)``, 1/m, and ``(n,)``: ∇κ and κ of the nodes.
+        random: ``(n, dim)``, from -1 to 1.
+        shift: ``(n, dim)``, ∇κ_f, 1/m, becomes the shift, m; its largest component is at most ``LONGEST`` h.
     """
     n, dim = shift.shape
     for c in prange(chunk_count(n)):
         for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            drawn, outwards = -RATE * sheared[p] * h * h, 0.0
+            drawn, walk = -RATE * sheared[p] * h * h, math.sqrt(6 * DIFFUSION * excess[p] * sheared[p]) * h
+            steepness = outwards = along = 0.0
             for d in range(dim):
-                outwards += drawn * shift[p, d] * spacing * slope[p, d]
-            near = _steepness(slope, spacing, crowding, p)
-            taken = min(outwards, 0.0) / near if near > 0 else 0.0
+                steep = spacing * slope[p, d]
+                steepness += steep * steep
+                outwards += drawn * shift[p, d] * steep
+                along += walk * random[p, d] * steep
+            near = steepness > STEEP**2 or crowding[p] < LOOSE
+            taken = (min(outwards, 0.0) + along) / max(steepness, 1e-300) if near else 0.0
             most = 0.0
             for d in range(dim):
-                shift[p, d] = drawn * shift[p, d] - taken * spacing * slope[p, d]
+                shift[p, d] = drawn * shift[p, d] + walk * random[p, d] - taken * spacing * slope[p, d]
                 most = max(most, abs(shift[p, d]))
             part = min(1.0, LONGEST * h / max(most, 1e-300))
             for d in range(dim):
                 shift[p, d] *= part
-
-
-@kernel()
-def _walk(shift, random, spread, h, slope, crowding, spacing):
-    """Add the step √(6 D dt) of the random walk to the shift, ``(n, dim)``, m.
-
-    Near the surface it has no part across it in either direction: a walk that goes only inwards would move
-    the surface.
-
-    Args:
-        random: ``(n, dim)``, from -1 to 1.
-        spread: ``(n,)``, D dt / h².
-        h, slope, crowding, spacing: as for ``_scale``.
-    """
-    n, dim = shift.shape
-    for c in prange(chunk_count(n)):
-        for p in range(c * CHUNK, min(n, (c + 1) * CHUNK)):
-            step = h * min(LONGEST, math.sqrt(6 * spread[p]))
-            along = 0.0
-            for d in range(dim):
-                along += step * random[p, d] * spacing * slope[p, d]
-            near = _steepness(slope, spacing, crowding, p)
-            taken = along / near if near > 0 else 0.0
-            for d in range(dim):
-                shift[p, d] += step * random[p, d] - taken * spacing * slope[p, d]
 
 
 def _weights(ops: Redistributing) -> np.ndarray:
