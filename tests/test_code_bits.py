@@ -101,4 +101,4 @@ def test_a_function_is_compiled_once_for_all_constants_of_one_type():
 
     assert both(2.0) == 4 + 8 + 0.5
     if not numba.config.DISABLE_JIT:
-        assert len(power.overloads) == 1
+        assert len(power.overloads) <= 1  # none if `both` comes from the cache of an earlier run
